@@ -34,7 +34,7 @@ def trees(key: str) -> list[SteadyStatesBySpeed]:
     """The motions of those that are trees."""
     found = list[SteadyStatesBySpeed]()
     for line in described(key):
-        motions = SteadyStatesBySpeed(line)
+        motions = SteadyStatesBySpeed(line, compiled=False)
         try:
             if not motions.unexcited.topology.rates:  # nothing moves it
                 continue

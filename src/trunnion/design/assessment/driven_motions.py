@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,9 +22,7 @@ from trunnion.floquet.ranges.unstable import Judge, UnstableRanges, unstable_ran
 from trunnion.floquet.stability.stability_over_speed import stability_along, straight_decay
 from trunnion.results.counts import counted
 from trunnion.results.verdict import Verdict
-
-if TYPE_CHECKING:
-    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
+from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed, breaks
 
 SWINGS = 2e-3
 """Rotation [rad] at the joints, by linear theory, from which on a driven line is judged about the motion that it makes:
@@ -44,12 +41,9 @@ def ranges_about_motions(
 ) -> UnstableRanges:
     """Of a driven line whose joints swing by ``swing`` [rad], at ``given`` speeds or over the range from so many
     ``points`` on; ``static``: what there is about the static twist, where the motions cannot be followed."""
-    # Loaded where needed: it brings the compiler with it.
-    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
-
     if span.put:
         return replace(static(), not_followed="its numbers follow the speed")
-    motions = SteadyStatesBySpeed(span.assembly.line)
+    motions = SteadyStatesBySpeed(span.assembly.line, compiled=False)
     judge = partial(stability_along, span.assembly, about_steady_state=True, motions=motions)
     try:
         if motions.obstacle:
@@ -67,9 +61,6 @@ def ranges_about_motions(
 def lost_motions(span: Span, motions: SteadyStatesBySpeed, points: int, aside: float = 0.0) -> tuple[Gap, ...]:
     """Speeds of the range at which a line's periodic steady state breaks off, looked for from so many ``points`` on and
     a share ``aside`` beyond the ends."""
-    # Loaded where needed: it brings the compiler with it.
-    from trunnion.steady.free.periodic_steady_states import breaks
-
     met, low, high = resonances(span), span.start, span.high
     about = (met.speed[:, None] + met.width[:, None] * np.array([-1.0, 0.0, 1.0])).ravel()
     speeds = np.union1d(np.linspace(low, high, points), about[(about >= low) & (about <= high)])

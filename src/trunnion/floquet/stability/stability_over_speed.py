@@ -156,7 +156,7 @@ def _about_steady_states(
 
     require_balance(assembly, assembly.table(len(speed), speed))
     solved = solved or SteadyStatesBySpeed(assembly.line)
-    if assembly.topology.size >= LONG and not solved.obstacle and solved.balance.of_tree:
+    if assembly.topology.size >= LONG and not solved.obstacle and solved.balance.along_tree:
         return _by_modes_of_the_motion(solved, speed)
     motions = steady_state_slopes(assembly.line, speed, solved)
     if motions is None:

@@ -5,8 +5,8 @@ harmonics.
 
 T is the torque of the drives beyond the balance of the loads, which keeps the mean speed; the last equation fixes the
 phase. Of a line whose input turns as prescribed neither is there. Newton's steps are taken for all speeds together:
-along the tree of a line that is nothing else (``tree_newton``), of any other with matrices of all unknowns,
-accelerations and their slopes being those of the compiled nonlinear equations at samples of the period.
+along the tree of a line that is nothing else (``tree_newton``), of any other and of short ones with matrices of all
+unknowns, accelerations and their slopes being those of the compiled nonlinear equations at samples of the period.
 """
 
 from __future__ import annotations
@@ -53,6 +53,9 @@ NEGLIGIBLE = 1e-10
 """Size of the outermost harmonics [rad] that is small enough."""
 CORRECTIONS, MATRICES = 8, 4
 """Newton's steps, and matrices of all unknowns that one takes."""
+LONG = 6
+"""Unknowns from which on steps along the tree cost less than matrices of all unknowns and compiled slopes: as much at
+five, half at eight, a fifth at sixteen, whatever the harmonics."""
 MOST_NUMBERS = 4_000_000
 """Numbers of a batch of Newton's matrices."""
 
@@ -128,11 +131,11 @@ class SteadyStates:
         """Accelerations (case, time, n) [rad/s²] and their slopes (case, time, n, 2n) by the states at ``tau``; NaN
         where there are none.
 
-        Of a line that is a tree they come from its matrices, with slopes as close as the motion is balanced; of any
-        other from the compiled equations.
+        Of a line that is a tree they come from its matrices, with slopes as close as the motion is balanced, unless the
+        balance is ``compiled``; of any other from the compiled equations.
         """
         n = len(self.balance.turn)
-        if not self.balance.of_tree:
+        if not self.balance.of_tree or self.balance.compiled:
             rates, slopes = self._compiled(0.0)
             return rates[..., n:], slopes[:, :, n:]
         m = self._matrices
@@ -142,7 +145,7 @@ class SteadyStates:
 
     def by_drive(self) -> Array:
         """What one N m more of the drives adds to the accelerations (case, time, n)."""
-        if self.balance.of_tree:
+        if self.balance.of_tree and not self.balance.compiled:
             torques = self.balance.newton(self.table).driven(self.tau, self._given)
             return np.asarray(over_mass(self._matrices, torques[..., None])[..., 0])
         n = len(self.balance.turn)
@@ -209,8 +212,10 @@ Rows = Callable[[Array], Array]
 class FreeBalance:
     """Motions of a line by the balance of their harmonics."""
 
-    def __init__(self, assembly: Assembly, period: float) -> None:
-        """``assembly`` without exciters, which steps along the tree do not know; ``period`` [rad of input angle]."""
+    def __init__(self, assembly: Assembly, period: float, *, compiled: bool = True) -> None:
+        """``assembly`` without exciters, which steps along the tree do not know; ``period`` [rad of input angle];
+        ``compiled`` : False where no compiler is to be loaded for a line that is a tree, which costs up to twice the
+        time for one of few unknowns."""
         refuse_dragged(assembly)
         topo = assembly.topology
         self.assembly, self.period, self.turn, self.free = assembly, period, rigid_rotation(topo), topo.free
@@ -220,7 +225,8 @@ class FreeBalance:
         self.fewest = max(FEWEST, 3 * self.fastest)
         self.weight = np.ones(2 * topo.size)
         self.rows: Rows = self._at_speeds
-        self.of_tree = of_tree(assembly)
+        self.of_tree, self.compiled = of_tree(assembly), compiled
+        self.along_tree = self.of_tree and not (compiled and topo.size < LONG)
 
     @cached_property
     def line(self) -> LineSystem:
@@ -274,7 +280,7 @@ class FreeBalance:
         InputError : says how long they would take, and how much memory.
         """
         size = len(self.turn)
-        if self.of_tree:  # no more than the response does along the tree
+        if self.along_tree:  # no more than the response does along the tree
             return
         unknowns = size * (2 * h + 1) + 1
         seconds, memory = many * (1.5e-9 * unknowns**3 + 3e-7 * unknowns**2), MATRICES * 8.0 * unknowns**2
@@ -285,7 +291,7 @@ class FreeBalance:
         table = self.rows(value)
         speed, co = table[:, 0], self.assembly.untwisted(table)
         first, unit = self.rigid(table, h, co) if guess is None else guess, self.torque_unit(co)
-        if self.of_tree:
+        if self.along_tree:
             motions_found, found = tree_newton.solved(
                 lambda some: self.newton(table[some]), first, unit, ANGLE_SCALE, tolerance=CLOSED, most=CORRECTIONS
             )

@@ -82,6 +82,7 @@ def long_steady_state(line: Driveline, speed: float, least: int) -> LongSteadySt
     if curve.unexcited.topology.size < least or curve.obstacle or not curve.balance.of_tree:
         return None
     balance, at = curve.balance, np.array([speed])
+    balance.along_tree = True
     require_balance(balance.assembly, balance.assembly.table(1, speed))
     motions = curve.at_all(at)
     if leads_elsewhere(balance, motions):

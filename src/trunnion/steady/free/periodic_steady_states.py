@@ -403,8 +403,9 @@ class SteadyStateCurve:
 class SteadyStatesBySpeed(SteadyStateCurve):
     """The motions of one line over its speed [rad/s]: the orders and the stability along a range ask for the same."""
 
-    def __init__(self, line: Driveline) -> None:
-        self.line = line
+    def __init__(self, line: Driveline, *, compiled: bool = True) -> None:
+        """``compiled`` : as of ``FreeBalance``."""
+        self.line, self.compiled = line, compiled
         self.known, self.broken = {}, ()
 
     @cached_property
@@ -424,9 +425,8 @@ class SteadyStatesBySpeed(SteadyStateCurve):
     @cached_property
     def balance(self) -> FreeBalance:
         """What solves them."""
-        return FreeBalance(
-            self.unexcited, 2 * np.pi * float(require_period(self.unexcited.line, self.unexcited.topology))
-        )
+        period = 2 * np.pi * float(require_period(self.unexcited.line, self.unexcited.topology))
+        return FreeBalance(self.unexcited, period, compiled=self.compiled)
 
     def by_speed(self, table: Array) -> Flags:
         """Whether any torque depends on the speed (case,)."""

@@ -85,7 +85,7 @@ def _doubtful(balance: FreeBalance, motions: SteadyStates) -> Flags:
 
 def _breaks_about(curve: SteadyStatesBySpeed, speeds: Array) -> tuple[Break, ...]:
     """Where motions break off among ``speeds`` (speed,), rising, and a little beside."""
-    dear = len(curve.balance.turn) >= LONG and not curve.balance.of_tree
+    dear = len(curve.balance.turn) >= LONG and not curve.balance.along_tree
     aside = ASIDE_OF_LONG if dear else ASIDE
     ends = speeds[0] * (1 - aside), speeds[-1] * (1 + aside)
     return breaks(curve, np.array([ends[0], *speeds, ends[1]]), between=not dear)

@@ -250,7 +250,7 @@ class _SpectrumProblem:
         if self.own is not None:
             self.own.balance.require_time(self.own.balance.fewest, len(numbers))
             each = self.topo.size * (2 * self.own.balance.fewest + 1)
-            self.batch = max(1, MOST_NUMBERS // (8 * each if self.own.balance.of_tree else each**2))
+            self.batch = max(1, MOST_NUMBERS // (8 * each if self.own.balance.along_tree else each**2))
         elif self.varies:
             self.batch = self._batch()
         else:

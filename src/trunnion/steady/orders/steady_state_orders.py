@@ -87,8 +87,8 @@ class SteadyStateOrders:
         seen[..., places.joint_input] = (swing - swing.mean(axis=1, keepdims=True))[..., before]
         return SteadyStateBase(
             ratio=relative[..., [c.near for c in topo.compliances]],
-            mass=1.0 if self.balance.of_tree else topo.on_unknowns(co.inertia[:, None], relative),
-            equations=TreeSlopes.of(motions) if self.balance.of_tree else StateSlopes.of(motions),
+            mass=1.0 if self.balance.along_tree else topo.on_unknowns(co.inertia[:, None], relative),
+            equations=TreeSlopes.of(motions) if self.balance.along_tree else StateSlopes.of(motions),
             base=BaseOfExcitation(relative, observed.rotation),
             wave=stiffness_waves(topo, co, tau),
             seen=seen,
