@@ -205,18 +205,18 @@ class IntegratedMap:
     ) -> MapEvaluation:
         n = self.size
         run = self.run(np.vstack([x, np.eye(n)]) if tangents else x[None], dense=dense, looser=looser)
-        columns = [self.slope(x, run, place) for place in by] if run.end is IntegrationEnd.REACHED else []
+        columns = [self.slope(x, run, place, looser) for place in by] if run.end is IntegrationEnd.REACHED else []
         done = run.end is IntegrationEnd.REACHED and all(np.isfinite(column).all() for column in columns)
         by_values = np.stack(columns, axis=1) if columns else np.zeros((n, 0))
         return MapEvaluation(run.final[0], run.final[1:].T, by_values, len(run.event_time), done, run)
 
-    def slope(self, x: Array, run: Trajectory, place: int) -> Array:
-        """∂P by one of the values, by a central difference; NaN where a motion ends before."""
+    def slope(self, x: Array, run: Trajectory, place: int, looser: float) -> Array:
+        """∂P by one of the values, by a central difference of runs as loose as ``run``; NaN where one ends before."""
         ends = []
         for side in (-1.0, 1.0):
             moved = list(self.values)
             moved[place] += side * self.steps[place]
-            beside = self.at(*moved).run(x[None])
+            beside = self.at(*moved).run(x[None], looser=looser)
             ends.append(beside.final[0] if beside.end is IntegrationEnd.REACHED else np.full(len(x), np.nan))
         return np.asarray((ends[1] - ends[0]) / (2 * self.steps[place]))
 
@@ -287,7 +287,7 @@ class TimedMap(IntegratedMap):
     def length(self) -> float:
         return float(self.values[0])
 
-    def slope(self, x: Array, run: Trajectory, place: int) -> Array:
+    def slope(self, x: Array, run: Trajectory, place: int, looser: float) -> Array:
         return self.system.rate_at(run.time, run.final[0], run.final_regime)
 
     @classmethod

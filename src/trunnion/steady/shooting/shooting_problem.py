@@ -76,7 +76,7 @@ class ShootingProblem(Generic[M]):
 
     scale (n + unknown values,): size of each unknown that counts as one; tolerance: how well an orbit must close, in
     these units; within: between which an unknown value of one orbit is looked for; over: what a branch lies over; last:
-    the last trial motion.
+    the last trial motion; alone: of what map and from where it began, if it was without tangents.
     """
 
     map: M
@@ -86,6 +86,7 @@ class ShootingProblem(Generic[M]):
     within: tuple[float, float] = (-np.inf, np.inf)
     over: Names = field(default_factory=Names)
     last: MapEvaluation | None = None
+    alone: tuple[M, Array] | None = None
 
     @property
     def size(self) -> int:
@@ -135,13 +136,17 @@ class ShootingProblem(Generic[M]):
         if not np.isfinite(z).all():
             return None
         n = self.size
+        if not tangents and self.alone and self.alone[0] is self.map and np.array_equal(self.alone[1], z):
+            return self.last
         try:
             by = range(len(z) - n) if tangents else ()
+            self.alone = None
             self.last = self.place(z)(z[:n], tangents=tangents, by=by)
         except InputError:  # a trial value may be no value of this parameter
             if len(z) == n and self.last is None:
                 raise
             return None
+        self.alone = None if tangents else (self.map, z.copy())
         return self.last
 
     def solve(self, guess: Array) -> Root:
