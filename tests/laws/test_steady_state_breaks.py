@@ -7,7 +7,9 @@ Against the equations of motion integrated in time (``oracles.own_shooting``), w
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +20,7 @@ from oracles.scanned_lines import scanned_line
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.floquet.stability.stability_over_speed import stability_along
+from trunnion.response.orders.response import one_motion_each
 from trunnion.response.speed_sweep import response_over
 from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed, breaks
 
@@ -76,15 +79,43 @@ def test_responses_are_refused_where_stability_refuses(beside: tuple[float, ...]
     )
 
 
-def test_a_response_over_a_range_within_which_the_motion_folds_names_the_ends_of_the_fold():
-    """Those that shooting finds by arc length; beside the fold there is one motion at every speed, and a response."""
-    line = scanned_line("free", 117).driveline
+FOLD = 66.979466, 67.024574
+"""Ends [rad/s] of the fold of line 117 that shooting finds by arc length."""
+
+
+def refused_ends(over: Callable[[], Any]) -> list[float]:
+    """Ends [rad/s] of the fold for which something is refused, rising."""
     with pytest.raises(tn.ComputationError, match="several periodic motions at") as refused:
-        response_over(line, 66.5, 67.5, points=9)
-    ends = sorted(float(one) for one in re.findall(r"at ([\d.]+) rad/s", str(refused.value))[1:])
-    assert ends == pytest.approx([66.979466, 67.024574], rel=2e-5)
+        over()
+    return sorted(float(one) for one in re.findall(r"at ([\d.]+) rad/s", str(refused.value))[1:])
+
+
+@pytest.mark.parametrize("over", [response_over, tn.sweep_speeds])
+@pytest.mark.parametrize(
+    "ends", [(66.5, 67.5), (66.5, 66.99), pytest.param((50.0, 90.0), marks=pytest.mark.slow)], ids=str
+)
+def test_a_range_within_which_the_motion_folds_is_refused_with_the_ends_of_the_fold(
+    over: Callable[..., Any], ends: tuple[float, float]
+) -> None:
+    """The speeds for a sweep as the response over the range."""
+    line = scanned_line("free", 117).driveline
+    assert refused_ends(lambda: over(line, *ends, points=9)) == pytest.approx(FOLD, rel=2e-5)
+
+
+@pytest.mark.parametrize("speeds", [(66.9, 67.1), (66.5, 66.7, 67.3)], ids=str)
+def test_a_fold_between_two_speeds_is_one_of_the_range_and_of_neither_speed(speeds: tuple[float, ...]) -> None:
+    line = scanned_line("free", 117).driveline
+    assert np.isfinite(tn.order_response(line, speeds).vibratory_torque).all()
+    motions, asked = SteadyStatesBySpeed(line), np.array(speeds)
+    ends = refused_ends(lambda: one_motion_each(assemble(line), asked, motions, between=True))
+    assert ends == pytest.approx(FOLD, rel=2e-5)
+
+
+def test_beside_a_fold_speeds_and_response_over_a_range_are_found() -> None:
+    line = scanned_line("free", 117).driveline
     beside = response_over(line, 67.1, 67.6, points=9)
     assert len(beside.speed) > 9 and np.isfinite(beside.vibratory_torque).all()
+    assert tn.sweep_speeds(line, 67.1, 67.6, 9) == pytest.approx(beside.speed)
 
 
 @pytest.mark.slow
@@ -103,7 +134,7 @@ def test_between_two_folds_motions_from_either_side_do_not_meet():
     line = scanned_line("free", 117)
     steady, solved = Steady(line), SteadyStatesBySpeed(line.driveline)
     (found,) = breaks(solved, np.linspace(line.low, line.high, 33))
-    assert (found.low, found.high) == pytest.approx((66.979466, 67.024574), rel=2e-6)  # the shooting's, by arc length
+    assert (found.low, found.high) == pytest.approx(FOLD, rel=2e-6)
     assert "several" in found.why
     assert not leads_over(steady, found.low * (1 - 1e-5), found.high * (1 + 1e-5))
     assert leads_over(steady, found.low * (1 - 1e-3), found.low * (1 - 1e-5))
@@ -156,7 +187,7 @@ def test_checks_cover_all_but_the_speeds_where_the_motion_folds():
         assert "not judged: the line's periodic steady state folds back there" in check.because
         (first, second) = check.covered
         assert (first[0], second[1]) == pytest.approx((line.low, line.high))
-        assert (first[1], second[0]) == pytest.approx((66.979466, 67.024574), rel=2e-6)
+        assert (first[1], second[0]) == pytest.approx(FOLD, rel=2e-6)
     assert 100 < judged.check("max torque of s1").value < 1e6
 
 

@@ -191,6 +191,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     Raises
     ------
     InputError : as of ``order_response``; a long line whose search would take too long, with an estimate.
+    ComputationError : as of ``response_over``.
 
     Examples
     --------
@@ -202,18 +203,22 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     True [40. 70.]
     """
     assembly, even = assemble(line), _even(low, high, points)
+    motions = steady_states_of(assembly)
     try:
         first = _first(assembly, even)
         too_long = _too_long(assembly, first)
-        found = None if too_long else _searched(assembly, first)
+        found = None if too_long else _searched(assembly, first, motions)
     except (InputError, ComputationError) as error:
         order_response(assembly, even[[0, -1]])  # what has no response at any speed is refused
+        one_motion_each(assembly, even, motions, between=True)
         warnings.warn(InputRemark(_evenly(even, error)), stacklevel=2)
         return even
     if found is None:
         assert too_long is not None
         raise too_long
-    return _with(even, found.speed)
+    speeds = _with(even, found.speed)
+    one_motion_each(assembly, speeds, motions, between=True)
+    return speeds
 
 
 def response_over(
@@ -235,6 +240,8 @@ def response_over(
     Raises
     ------
     InputError : as of ``order_response``; a long line whose search would take too long, with an estimate.
+    ComputationError : the motions of a free–free line with joint angles fold back within the range, so that several
+        have one speed, be it between two of those looked at; or it has none at any.
     """
     assembly, even = assemble(line), _even(low, high, points)
     motions = motions or steady_states_of(assembly)
@@ -244,6 +251,7 @@ def response_over(
         found = None if too_long else _searched(assembly, first, motions, known, around)
     except (InputError, ComputationError) as error:  # refused by the response too, where it holds of any speed
         response = order_response(assembly, even, orders, progress=progress)
+        one_motion_each(assembly, even, motions, between=True)
         remark = Finding(Gravity.CAUTION, _evenly(even, error))
         return replace(response, remarks=(remark, *response.remarks))
     if found is None:
@@ -251,7 +259,7 @@ def response_over(
         raise too_long
     speeds, solved = _with(even, found.speed), found.spectrum
     del found, known
-    one_motion_each(assembly, speeds, motions)
+    one_motion_each(assembly, speeds, motions, between=True)
     return completed_response(assembly, solved, speeds, orders, motions=motions, progress=progress)
 
 

@@ -128,9 +128,10 @@ def steady_states_of(assembly: Assembly) -> SteadyStatesBySpeed | None:
 
 
 def one_motion_each(
-    assembly: Assembly, speeds: Array, motions: SteadyStatesBySpeed | None
+    assembly: Assembly, speeds: Array, motions: SteadyStatesBySpeed | None, *, between: bool = False
 ) -> SteadyStatesBySpeed | None:
-    """``motions``, of which no speed (speed,) [rad/s] has several; see ``steady.free.several_motions``.
+    """``motions``, of which no speed (speed,) [rad/s] has several, none ``between`` them either where they stand for
+    a range; see ``steady.free.several_motions``.
 
     Raises
     ------
@@ -143,7 +144,7 @@ def one_motion_each(
     if not assembly.coefficients(table, any_frequency=True).loss.any():  # with a loss factor about rigid shafts
         from trunnion.steady.free.several_motions import require_one_motion_each
 
-        require_one_motion_each(motions, assembly.line, speeds)
+        require_one_motion_each(motions, assembly.line, speeds, between=between)
     return motions
 
 

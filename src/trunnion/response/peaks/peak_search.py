@@ -108,9 +108,9 @@ class PeakSearch:
         """What the line in the middle of the tolerances takes over the range: what matters is known then."""
         line = self.space.line_at(np.full(self.space.size, 0.5))[0]
         low, high = self.space.speeds
-        speeds = sweep_speeds(line, low, high) if low < high else np.array([low])
-        speeds = speeds[:: -(-len(speeds) // AROUND)]  # the middles of boxes come closer
         try:
+            speeds = sweep_speeds(line, low, high) if low < high else np.array([low])
+            speeds = speeds[:: -(-len(speeds) // AROUND)]  # the middles of boxes come closer
             found = order_response(line, speeds)
         except ComputationError:
             return

@@ -51,9 +51,11 @@ def require_one_motion(curve: SteadyStatesBySpeed, line: Driveline, speed: float
     _refuse_folds(curve, line, [speed])
 
 
-def require_one_motion_each(curve: SteadyStatesBySpeed, line: Driveline, speeds: Array) -> None:
+def require_one_motion_each(
+    curve: SteadyStatesBySpeed, line: Driveline, speeds: Array, *, between: bool = False
+) -> None:
     """The same of every one of ``speeds`` (speed,) [rad/s] at which others may have the same speed, those that lie
-    beside each other together.
+    beside each other together; and of all speeds ``between`` them, where they stand for the range that they span.
 
     Raises
     ------
@@ -65,7 +67,8 @@ def require_one_motion_each(curve: SteadyStatesBySpeed, line: Driveline, speeds:
     if len(doubtful):
         runs = np.split(doubtful, np.flatnonzero(doubtful[1:] > (1 + ASIDE) * doubtful[:-1]) + 1)
         curve.broken = tuple(merged(one for run in runs for one in _breaks_about(curve, run)))
-        _refuse_folds(curve, line, doubtful.tolist())
+        folds = _folds_within(curve, float(asked[0]), float(asked[-1])) if between else []
+        _refuse_folds(curve, line, [*doubtful.tolist(), *folds])
 
 
 def _doubtful(balance: FreeBalance, motions: SteadyStates) -> Flags:
@@ -89,6 +92,12 @@ def _breaks_about(curve: SteadyStatesBySpeed, speeds: Array) -> tuple[Break, ...
     aside = ASIDE_OF_LONG if dear else ASIDE
     ends = speeds[0] * (1 - aside), speeds[-1] * (1 + aside)
     return breaks(curve, np.array([ends[0], *speeds, ends[1]]), between=not dear)
+
+
+def _folds_within(curve: SteadyStatesBySpeed, low: float, high: float) -> list[float]:
+    """The middle [rad/s] of what every break has of a range: a fold may be narrower than the speeds are apart."""
+    shared = [(max(one.low, low), min(one.high, high)) for one in curve.broken]
+    return [(a + b) / 2 for a, b in shared if a < b]
 
 
 def _refuse_folds(curve: SteadyStatesBySpeed, line: Driveline, speeds: Iterable[float]) -> None:
