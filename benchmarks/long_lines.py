@@ -4,7 +4,8 @@
 
 Straight free chains stand beside openTorsion where that is installed, side by side. ``order_response`` at 50 speeds
 and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at one speed,
-and whether it takes the cheaper of its two ways; ``stability_chart`` over speed and joint angles, once, as chosen and
+and whether it takes the cheaper of its two ways; the response with the largest torques over a range, as estimated
+before it begins and as it took; ``stability_chart`` over speed and joint angles, once, as chosen and
 without grids of whole matrices where that takes no more than a minute; once each, with the largest memory, what looks
 over the whole range: modes and Campbell diagram, uneven turns, unstable speeds, the response with the largest torques,
 ``assess`` and ``sensitivity``.
@@ -32,7 +33,7 @@ from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import unstable_ranges
 from trunnion.floquet.stability import stability as judged
 from trunnion.floquet.stability.stability_over_speed import stability_along
-from trunnion.response.speed_sweep import response_over
+from trunnion.response.speed_sweep import begun_with, cost_of_range, response_over
 from trunnion.steady.orders import spectrum
 
 SPEEDS = tn.rpm(np.linspace(600.0, 3000.0, 50))
@@ -138,6 +139,13 @@ def main() -> None:
                 median(lambda line=line: tn.stability(line, 150.0), asked.repeats) for _ in ways_to_multipliers()
             )
             print(f"| {n}, {angle:.0f}° | {chosen:.3f} | {modes:.3f} | {carried:.3f} |", flush=True)
+    print(
+        "\n| inertias, angle | response over a range, estimated [s] | measured [s] | times as long |\n|---|---|---|---|"
+    )
+    for n in (10, 20, 50, 100):
+        for degrees in (5.0, 15.0, 30.0, 45.0) if n <= asked.most else ():
+            estimate, seconds = estimated_and_measured(chain(n, 2, degrees))
+            print(f"| {n}, {degrees:.0f}° | {estimate:.2f} | {seconds:.2f} | {seconds / estimate:.1f} |", flush=True)
     print("\n| inertias, pixels of a chart | as chosen [s] | without whole matrices |\n|---|---|---|")
     for n, size, both in CHARTS:
         if n <= asked.most:
@@ -149,6 +157,15 @@ def main() -> None:
     for n in (10, 20, 50, 100):
         for what in RANGES if n <= asked.most else ():
             subprocess.run([sys.executable, __file__, "--one", what, "--most", str(n)], check=True)
+
+
+def estimated_and_measured(line: tn.Driveline) -> tuple[float, float]:
+    """Processor seconds of the response over ``NARROW``, by which long ones are refused, and those it takes."""
+    assembly, even = assemble(line), np.linspace(*NARROW, 241)
+    _, cost = cost_of_range(assembly, even, begun_with(assembly, even))
+    begin = time.process_time()
+    response_over(line, *NARROW)
+    return cost.seconds, time.process_time() - begin
 
 
 def response_over_range(line: tn.Driveline) -> None:
@@ -183,6 +200,8 @@ def turns_of_joints(line: tn.Driveline) -> None:
     tn.kinetostatics(line, ENDS[1])
 
 
+NARROW = (float(tn.rpm(600.0)), float(tn.rpm(900.0)))
+"""Which holds few enough resonances of 100 inertias."""
 ENDS = (float(tn.rpm(600.0)), float(tn.rpm(3000.0)))
 RANGES = {
     work.__name__: work

@@ -2453,6 +2453,23 @@ PYTHON = [
         "driveline: has 30 unknowns: its response over a range, at some",
         "ask for a number of speeds",
     ),
+    *(
+        (
+            lambda over=over: over(
+                line(
+                    ConstantSpeed(),
+                    HookeJoint(angle=0.1),
+                    Shaft(stiffness=1e4, damping=1),
+                    Disk(inertia=1, excitation=[{"order": 2, "speeds": [90, 105], "amplitudes": [1, 2]}]),
+                ),
+                120.0,
+                130.0,
+            ),
+            "Disk 1.excitation 1: is a table from 859.437 rpm to 1002.68 rpm, which does not cover 1241.4 rpm",
+            "extend the table",
+        )
+        for over in (response_over, tn.sweep_speeds)
+    ),
     (lambda: Driveline(3), "elements: must be a list, not of type int", "tn.Driveline(["),
     (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not of type Disk", "tn.Driveline(["),
     (

@@ -16,7 +16,7 @@ from trunnion.equations import linear
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.topology import require_period
 from trunnion.steady.orders import spectrum as responses
-from trunnion.steady.orders.spectrum import order_spectrum, response_cost
+from trunnion.steady.orders.spectrum import order_spectrum, search_cost
 from trunnion.steady.orders.unbalanced import balanced, unbalanced
 
 SPEED = 150.0
@@ -105,11 +105,46 @@ def test_a_joint_at_80_degrees_takes_as_many_side_orders_as_it_needs() -> None:
 def test_what_a_range_costs_is_reckoned_with_the_side_orders_that_its_slowest_speed_takes() -> None:
     line, ends = chain(17, np.deg2rad(80.0)), np.array([40.0, 300.0])
     slow, fast = (tn.order_response(line, [speed]).side_orders for speed in ends)
-    cost, one = (response_cost(assemble(line), at, 100) for at in (ends, ends[1:]))
+    cost, one = (search_cost(assemble(line), at, 100) for at in (ends, ends[1:]))
     assert cost.side_orders >= slow > fast == one.side_orders
     assert cost.seconds > one.seconds and cost.memory > one.memory
-    straight = response_cost(assemble(chain(17, 0.0)), ends, 100)
+    straight = search_cost(assemble(chain(17, 0.0)), ends, 100)
     assert straight.seconds == straight.memory == straight.side_orders == 0
+
+
+@pytest.mark.parametrize("degrees", [5.0, 15.0, 30.0, 45.0])
+@pytest.mark.parametrize("inertias", [10, 20, 50, 100])
+def test_what_a_search_costs_is_reckoned_with_the_harmonics_that_are_solved(
+    inertias: int, degrees: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Those of every pass at each of these speeds, counted where they are solved, and all amplitudes that come out."""
+    line, speeds, solved = chain(inertias, np.deg2rad(degrees)), np.linspace(60.0, 300.0, 24), list[list[int]]()
+    own = responses.TreeHill.solve
+
+    def counted(blocks: Any, weights: Any, carrier: Any, h: Any, *more: Any) -> Any:
+        solved.append([len(h)] * len(speeds))
+        return own(blocks, weights, carrier, h, *more)
+
+    monkeypatch.setattr(responses.TreeHill, "solve", counted)
+    found = spectrum(line, speeds)
+    every = sorted(h for group in solved for h in group)
+    asked, looked = list[tuple[int, int]](), list[int]()
+    plain, through = responses.along_tree, responses.looking_through
+
+    def along(topo: Any, harmonics: Any, cases: int) -> float:
+        asked.extend((h, cases) for h in harmonics)
+        return plain(topo, harmonics, cases)
+
+    def look(amplitudes: int) -> float:
+        looked.append(amplitudes)
+        return through(amplitudes)
+
+    monkeypatch.setattr(responses, "along_tree", along)
+    monkeypatch.setattr(responses, "looking_through", look)
+    cost = search_cost(assemble(line), speeds, len(speeds))
+    assert sorted(h for h, cases in asked for _ in range(cases)) == every
+    assert looked == [found.amplitude.size]
+    assert cost.side_orders == found.side_orders
 
 
 def test_a_response_that_does_not_balance_is_solved_by_whole_matrices(monkeypatch: pytest.MonkeyPatch) -> None:

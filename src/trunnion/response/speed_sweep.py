@@ -38,7 +38,7 @@ from trunnion.results.result import Result
 from trunnion.results.stretches import largest_over, stretches_above
 from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
-from trunnion.steady.orders.spectrum import response_cost
+from trunnion.steady.orders.spectrum import SearchCost, search_cost
 
 if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
@@ -53,7 +53,9 @@ LONG = 16
 """Unknowns from which on what a search costs is estimated before it begins."""
 MOST_SEARCHED = 600.0
 """Processor time [s] beyond which a range is not searched, as a number of speeds can be asked for in its place."""
-SEARCHED = 1.5
+TRIED = 12
+"""Speeds that tell about how many harmonics all of them take."""
+SEARCHED = 1.1
 """Speeds that a search looks at, of each that it begins with."""
 
 STATE_SPEEDS = "ask for a number of speeds, such as --speed 600rpm:3000rpm:41, or state smaller joint angles"
@@ -205,8 +207,8 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     assembly, even = assemble(line), _even(low, high, points)
     motions = steady_states_of(assembly)
     try:
-        first = _first(assembly, even)
-        too_long = _too_long(assembly, first)
+        first = begun_with(assembly, even)
+        too_long = _too_long(assembly, even, first)
         found = None if too_long else _searched(assembly, first, motions)
     except (InputError, ComputationError) as error:
         order_response(assembly, even[[0, -1]])  # what has no response at any speed is refused
@@ -246,8 +248,8 @@ def response_over(
     assembly, even = assemble(line), _even(low, high, points)
     motions = motions or steady_states_of(assembly)
     try:
-        first = _first(assembly, even)
-        too_long = _too_long(assembly, first) if known is None else None
+        first = begun_with(assembly, even)
+        too_long = _too_long(assembly, even, first) if known is None else None
         found = None if too_long else _searched(assembly, first, motions, known, around)
     except (InputError, ComputationError) as error:  # refused by the response too, where it holds of any speed
         response = order_response(assembly, even, orders, progress=progress)
@@ -273,9 +275,16 @@ def _with(even: Array, found: Array) -> Array:
     return every[(every >= even[0]) & (every <= even[-1])]
 
 
-def _first(assembly: Assembly, even: Array) -> list[Array]:
-    """Speeds to begin with, by piece of the range."""
+def begun_with(assembly: Assembly, even: Array) -> list[Array]:
+    """Speeds to begin with, by piece of the range.
+
+    Raises
+    ------
+    InputError : the line is not known at any speed of the range.
+    """
     span = Span(assembly, float(even[0]), float(even[-1]))
+    if not span.pieces:
+        raise InputError(f"is not known at these speeds: {span.gaps[0].why}", element="driveline")
     met = resonances(span)
     about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
     return [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
@@ -289,14 +298,21 @@ def _evenly(even: Array, error: InputError | ComputationError) -> str:
     )
 
 
-def _too_long(assembly: Assembly, first: list[Array]) -> InputError | None:
-    """What refuses to search a range of a long line that begins with the speeds ``first``, by piece, where that would
-    not end or fill the memory."""
-    size, speeds = assembly.topology.size, sum(len(part) for part in first)
+def cost_of_range(assembly: Assembly, even: Array, first: list[Array]) -> tuple[int, SearchCost]:
+    """How many speeds a response over a range is solved at, about, on an ``even`` grid and by a search that begins with
+    the speeds ``first``, by piece; and what that takes."""
+    every = np.concatenate(first)
+    some, speeds = np.append(every[:: -(-len(every) // TRIED)], every[-1]), len(even) + int(SEARCHED * len(every))
+    return speeds, search_cost(assembly, some, speeds)
+
+
+def _too_long(assembly: Assembly, even: Array, first: list[Array]) -> InputError | None:
+    """What refuses to search a range of a long line, as ``cost_of_range``, where that would not end or fill the
+    memory."""
+    size = assembly.topology.size
     if size < LONG or has_periodic_base(assembly):  # whose motions are refused where they are solved
         return None
-    speeds = int(SEARCHED * speeds)
-    cost = response_cost(assembly, np.array([first[0][0], first[-1][-1]]), speeds)
+    speeds, cost = cost_of_range(assembly, even, first)
     what = f"its response over a range, at some {speeds} speeds with {cost.side_orders} side orders on either side,"
     try:
         require_estimate(size, what, cost.seconds, cost.memory, most=MOST_SEARCHED, remedy=STATE_SPEEDS)

@@ -22,13 +22,18 @@ def tree_pays(topo: Topology, harmonics: Sequence[int], cases: int) -> bool:
 def along_tree(topo: Topology, harmonics: Sequence[int], cases: int) -> float:
     """Elimination along the tree, without the check in time."""
     n, left = topo.size, places_left(topo)
-    return sum(0.6 + 0.02 * n + cases * (8e-5 * left * h**2 * (1 + h / 100) + 1e-4 * n * h) for h in harmonics)
+    return sum(0.6 + 0.02 * n + cases * (8e-5 * left * h**2 * (1 + h / 100) + 3.3e-4 * n * h) for h in harmonics)
 
 
 def by_whole_matrices(topo: Topology, harmonics: Sequence[int], cases: int) -> float:
     """Matrices of all harmonics of all unknowns."""
     n = topo.size
     return sum(1.2 + cases * 3.5e-5 * (n * h) ** 2 * (1 + n * h / 400) for h in harmonics)
+
+
+def looking_through(amplitudes: int) -> float:
+    """What a search makes of so many amplitudes by speed, order and channel: sums over the cycle, tops, poles."""
+    return 4.2e-4 * amplitudes
 
 
 def places_left(topo: Topology) -> int:

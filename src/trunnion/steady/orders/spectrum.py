@@ -46,7 +46,7 @@ from trunnion.steady.orders.channels import (
     graph_channels_of_harmonics,
     motion_channels,
 )
-from trunnion.steady.orders.cost_model import along_tree, by_whole_matrices, places_left, tree_pays
+from trunnion.steady.orders.cost_model import along_tree, by_whole_matrices, looking_through, places_left, tree_pays
 from trunnion.steady.orders.groups import OWN, CarrierGroup, SideOrders, groups_of, offsets
 from trunnion.steady.orders.sidebands import DECADES, MOST_DECADES, OUTERMOST, side_orders, spreads
 from trunnion.steady.orders.unbalanced import balanced
@@ -112,28 +112,30 @@ def order_spectrum(
 
 
 @dataclass(frozen=True)
-class ResponseCost:
-    """What the response of a line with angled joints or varying meshes takes at a number of speeds: seconds of
-    processor time, bytes, and side orders on either side; nothing worth naming of other lines."""
+class SearchCost:
+    """What searching the response of a line with angled joints or varying meshes takes, which looks at a number of
+    speeds: seconds of processor time, bytes, and side orders on either side; nothing worth naming of other lines."""
 
     seconds: float = 0.0
     memory: float = 0.0
     side_orders: int = 0
 
 
-def response_cost(assembly: Assembly, ends: Array, speeds: int) -> ResponseCost:
-    """At so many ``speeds``, about, by the harmonics that the ``ends`` of their range [rad/s] take: slow speeds take
-    more side orders.
+def search_cost(assembly: Assembly, some: Array, speeds: int) -> SearchCost:
+    """At so many ``speeds``, about, by the harmonics that ``some`` of them [rad/s] take: slow speeds take more side
+    orders, and resonances of these. Where more are needed than one begins with, all is solved again with more.
 
     Raises
     ------
     InputError : as of ``order_spectrum``.
     """
-    case = _SpectrumProblem(assembly, True, _numbers(assembly, ends, None), False, False, None, False)
+    case = _SpectrumProblem(assembly, True, _numbers(assembly, some, None), False, False, None, False)
     if not case.varies or case.own is not None:
-        return ResponseCost()
-    *_, found = [case.solved(slice(i, i + 1)) for i in range(len(ends))]
-    return ResponseCost(case.seconds(speeds), _room(found, speeds), found.side_orders)
+        return SearchCost()
+    *_, found = [case.solved(slice(i, i + case.batch)) for i in range(0, len(some), case.batch)]
+    amplitudes = len(found.order) * found.channels.count * speeds
+    seconds = case.seconds(speeds) + looking_through(amplitudes) / 1000
+    return SearchCost(seconds, _room(found, speeds), found.side_orders)
 
 
 def _at_all(case: _SpectrumProblem, speed: Array, progress: Callable[[float], None] | None) -> OrderSpectrum:
@@ -238,6 +240,7 @@ class _SpectrumProblem:
         self.reach: float = ROUGH_REACH if rough else _reach(one.joints)
         self.along_tree = self.varies and self.own is None and not whole and self._tree_pays()
         if self.along_tree and not rough:
+            self.plans.clear()  # reaches count in decades now
             self.fall, self.reach = spreads(self.topo, one, self.turns), DECADES
         self.few: Array | None = None
         self.written: dict[float, _StraightEquations] = {}
@@ -292,10 +295,10 @@ class _SpectrumProblem:
         return max(1, MOST_IN_MATRICES // max(most**2, written))
 
     def seconds(self, cases: int) -> float:
-        """Processor time that so many cases take, about, in the harmonics that are reached by now."""
-        groups, sides, _ = self._plan(self.reach)
+        """Processor time that so many cases take, about, in all the harmonics that were tried by now."""
         cost = along_tree if self.along_tree else by_whole_matrices
-        return cost(self.topo, [len(sides.of(group)[0]) for group in groups], cases) / 1000
+        tried = [[len(sides.of(group)[0]) for group in groups] for groups, sides, _ in self.plans.values()]
+        return sum(cost(self.topo, harmonics, cases) for harmonics in tried) / 1000
 
     def solved(self, rows: slice) -> OrderSpectrum:
         """The sum of all responses at some of the cases."""
