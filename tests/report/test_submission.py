@@ -426,3 +426,47 @@ def test_a_tall_sketch_shows_numbers_alone_on_the_first_sheet() -> None:
     words = [[text.get_text() for text in one.axes[0].texts] for one in (named, alone)]
     assert "1 engine" in words[0] and "1 engine" not in words[1] and "1" in words[1]
     assert alone.get_size_inches()[1] < named.get_size_inches()[1]
+
+
+ONE_SPEED = """
+format = 1
+
+[[element]]
+type = "Motor"
+name = "motor"
+inertia = "0.45 kg*m^2"
+breakdown_torque = "720 N*m"
+breakdown_slip = 0.12
+synchronous_speed = "1500 rpm"
+excitation = [{ order = 2, amplitude = "4 N*m" }]
+
+[[element]]
+type = "Shaft"
+name = "coupling"
+stiffness = "STIFFNESS kN*m/rad"
+damping = "6 N*m*s/rad"
+
+[[element]]
+type = "Pump"
+name = "pump"
+inertia = "0.25 kg*m^2"
+rated_power = "30 kW"
+rated_speed = "1460 rpm"
+"""
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "said"),
+    [("30", "No excitation meets a mode from 737.24 rpm to 1769.38 rpm"), ("18", "Critical speeds from")],
+)
+def test_a_line_that_runs_at_one_speed_has_critical_speeds_about_it(tmp_path, stiffness: str, said: str) -> None:
+    """Order 2 of the second meets its mode, which the reduced inertia gives by hand, a tenth above the speed."""
+    path = tmp_path / "pump.toml"
+    path.write_text(ONE_SPEED.replace("STIFFNESS", stiffness))
+    page = tn.submission(tn.load(path)).html
+    assert said in page and "The line runs at one speed" in page and "must be two or more" not in page
+    result = CliRunner().invoke(app, ["campbell-diagram", str(path), "--json"])
+    assert result.exit_code == 0, result.output
+    crossings = tn.campbell_diagram(tn.load(path), np.linspace(77.2, 185.3, 101)).crossings
+    stated = np.sqrt(float(stiffness) * 1e3 * (1 / 0.45 + 1 / 0.25)) / 2
+    assert [one.speed == pytest.approx(stated, rel=0.02) for one in crossings] == [True] * int(stated < 185.3)

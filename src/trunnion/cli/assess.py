@@ -57,9 +57,9 @@ def campbell_diagram(line: Line, *, unit: SpeedUnit) -> CommandOutput:
     """Example: trunnion campbell-diagram truck.toml --load-case climb -o campbell.png"""
     import numpy as np
 
-    from trunnion.reporting.ranges import speed_range
+    from trunnion.reporting.ranges import diagram_range, speed_range
 
-    result = tn.campbell_diagram(line, np.linspace(*speed_range(line), DIAGRAM_POINTS))
+    result = tn.campbell_diagram(line, np.linspace(*diagram_range(*speed_range(line)), DIAGRAM_POINTS))
     return CommandOutput(result, draw=partial(result.plot, operating=line.operation))
 
 

@@ -368,13 +368,27 @@ def _line(axes: Axes, item: described.Line, panel: Panel) -> list[Artist]:
         if not one.every:
             k = int(item.role.rpartition(" ")[2]) if item.role[-1].isdigit() else 0
             marks["markevery"] = (0.02 * (k % 7), 0.14)
-    if np.isfinite(x + y).sum() == 1:  # of a single point a line shows nothing
-        marks = {"marker": "o", "ms": one.size}
+    if np.isfinite(x + y).sum() == 1:
+        return _lone_point(axes, item, one)
     if panel.polar:
         x = np.radians(x)
     axes.plot(x, y, label=item.name or None, clip_on=item.role != "operating range", solid_capstyle="butt",
               **{**marks, **_stroke(one)})  # fmt: skip
     return _entry(item.role, item.name, "line")
+
+
+LONE = ("s", "^", "D", "v", "P", "X")
+"""Shapes of lines of one point, which have no dashes to be told apart by."""
+
+
+def _lone_point(axes: Axes, item: described.Line, one: Look) -> list[Artist]:
+    """A line of a single point shows nothing as a line: it is a mark, in the legend too; a bar where it bounds."""
+    kind, _, number = item.role.partition(" ")
+    bounds = kind == "limit"
+    shape = "_" if bounds else LONE[int(number) % len(LONE)] if number.isdigit() else "o"
+    style: dict[str, Any] = {"marker": shape, "mew": 2.0 if bounds else 1.0, "ls": "", "color": one.colour}
+    axes.plot(item.x, item.y, ms=14.0 if bounds else 6.0, zorder=one.layer + 1.0, **style)
+    return [Line2D([], [], label=item.name, ms=9.0 if bounds else 6.0, **style)] if item.name else []
 
 
 def _points(axes: Axes, item: described.Points, panel: Panel) -> list[Artist]:

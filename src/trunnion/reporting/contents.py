@@ -22,6 +22,7 @@ from trunnion.modes.bending import BendingSpeed, bending_speeds
 from trunnion.modes.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.overview_assessment import NEARLY
+from trunnion.reporting.ranges import diagram_range
 from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
 from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.response.kinetostatics import kinetostatics
@@ -95,7 +96,9 @@ def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
                 )
             ),
         )
-    campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
+    campbell = unless_refused(
+        "Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(*diagram_range(low, high), 201))
+    )
     bending = bending_speeds(assembly)
     loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
     helped = _helped(seen)

@@ -35,6 +35,12 @@ def speed_range(line: Driveline) -> tuple[float, float]:
     return float(f"{low:.2g}"), float(f"{high:.2g}")
 
 
+def diagram_range(low: float, high: float) -> tuple[float, float]:
+    """Between which speeds [rad/s] modes over speed are drawn of a line that runs from ``low`` to ``high``: of one that
+    runs at one speed from half of it to a fifth beyond."""
+    return (low, high) if high > low else (0.5 * high, 1.2 * high)
+
+
 def angle_range(line: Driveline) -> tuple[float, float]:
     """The range of the description [rad]; else from straight to 30° or half again the largest joint angle."""
     if line.operation and line.operation.angle_range:

@@ -27,6 +27,7 @@ from trunnion.reporting.overview_assessment import OverviewAssessment, answer, a
 from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.reporting.provenance import fingerprint
+from trunnion.reporting.ranges import diagram_range
 from trunnion.reporting.submission_contents import SubmissionContents, gather
 from trunnion.reporting.tables import Table
 from trunnion.results.finding import Finding, Gravity
@@ -150,6 +151,8 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "all_searched": contents.complete and not any(one.ended for one in contents.misfiring),
         "met": contents.campbell is not None,
         "range": Words(seen.unit).ends(*seen.speed_range),
+        "one_speed": seen.speed_range[0] == seen.speed_range[1],
+        "drawn": Words(seen.unit).ends(*diagram_range(*seen.speed_range)),
         "curves": [key for key in shown if key.startswith("torque of ")],
         "pictures": shown,
         "program": f"Trunnion {__version__}, NumPy {np.__version__}",

@@ -24,6 +24,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.modes.mass_elastic import HolzerTable, holzer
 from trunnion.reporting.overview_assessment import OverviewAssessment
+from trunnion.reporting.ranges import diagram_range
 from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.results.counts import listed
 from trunnion.waiting import OutOfTime, keep_time
@@ -136,7 +137,7 @@ def gather(
             left_out.append(f"{question}: not computed, {error.why}")
         return None
 
-    low, high = seen.speed_range
+    low, high = diagram_range(*seen.speed_range)
     speeds = np.linspace(max(low, high / 200), high, 201)
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(seen.assembly, speeds))
     asked = [case for case in seen.subject.cases if case.response is not None]

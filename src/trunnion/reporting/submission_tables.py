@@ -30,7 +30,7 @@ from trunnion.errors import InputError
 from trunnion.modes.mass_elastic import HolzerTable, SpringRow, masses, springs
 from trunnion.reporting.submission_contents import SubmissionContents
 from trunnion.reporting.tables import Table, four
-from trunnion.results.counts import listed
+from trunnion.results.counts import counted, listed
 from trunnion.results.speeds import order_name
 from trunnion.results.words import HERTZ, Words
 
@@ -93,7 +93,9 @@ def particulars(contents: SubmissionContents) -> Table:
     if seen.line.operation and (cases := seen.line.operation.load_cases):
         rows.append(("load cases", ", ".join(["as described", *(case.name for case in cases)])))
     count = len(masses(seen.assembly)), len(springs(seen.assembly))
-    rows.append(("model", f"{count[0]} masses, {count[1]} springs, torsion only"))
+    rows.append(
+        ("model", f"{count[0]} {'mass' if count[0] == 1 else 'masses'}, {counted(count[1], 'spring')}, torsion only")
+    )
     elastic = seen.natural_frequencies.elastic
     if len(elastic):
         lowest = ", ".join(four(float(one) * HERTZ.factor) for one in elastic[:3])

@@ -15,6 +15,7 @@ from trunnion.app.parts.widgets import Html, HtmlPane, column, items, joined, ma
 from trunnion.app.views.base import VariantPane, View, ViewStep, at_speed, speed_range, unit_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.pictures.picture import Picture
+from trunnion.reporting.ranges import diagram_range
 
 CAMPBELL_POINTS = 61
 LOW = 2.0
@@ -173,7 +174,8 @@ class DashboardView(View):
         unit, _ = unit_of(line)
         speed = at_speed(line, None)
         speeds = Call("tn.sweep_speeds", (LINE, low_end, high))
-        campbell = Call("tn.campbell_diagram", (LINE, Call("np.linspace", (low_end, high, CAMPBELL_POINTS))))
+        over = Call("np.linspace", (*diagram_range(low_end, high), CAMPBELL_POINTS))
+        campbell = Call("tn.campbell_diagram", (LINE, over))
         shown = {"unit": unit}
         bare: dict[str, Any] = {"picture": "", "files": (), "soft": True}
         return [

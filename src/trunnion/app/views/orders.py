@@ -26,6 +26,7 @@ from trunnion.app.views.base import (
 )
 from trunnion.driveline.driveline import Driveline
 from trunnion.pictures.picture import Level, Picture
+from trunnion.reporting.ranges import diagram_range
 
 AS_STATED = "as stated"
 CAMPBELL_POINTS = 81
@@ -108,7 +109,8 @@ class OrdersView(View):
         shown = {"spring": spring, "unit": unit}
         orders = Call("tn.order_response", (LINE, speeds), case)
         wave = Call("tn.order_response", (LINE, (speed,)), case)
-        campbell = Call("tn.campbell_diagram", (LINE, Call("np.linspace", (low, high, CAMPBELL_POINTS))), case)
+        over = Call("np.linspace", (*diagram_range(low, high), CAMPBELL_POINTS))
+        campbell = Call("tn.campbell_diagram", (LINE, over), case)
         return [
             ViewStep(
                 "orders",
