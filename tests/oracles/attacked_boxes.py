@@ -67,6 +67,30 @@ def random_shape(rng: np.random.Generator, size: int, simple: bool) -> Shape:
     return Shape(parts, some)
 
 
+def staged_shape(rng: np.random.Generator, size: int) -> Shape:
+    """The same with loads on every disk, and stages of every other spring, whose knots stand close to where the load
+    puts it, at all speeds or at one between 0.3 and 3."""
+    shape = random_shape(rng, size, simple=False)
+    for part in shape.parts:
+        if part.kind == "disk":
+            part.numbers |= {"load_torque": rng.uniform(0.02, 0.08), "viscous_load": float(rng.choice([0.0, 3e-3]))}
+    torques = Chains(shape.parts, 10 ** rng.uniform(-0.5, 0.5, 1)).torques()
+    shafts = [part for part in shape.parts if part.kind == "shaft"]
+    for part, torque in list(zip(shafts, torques, strict=True))[::2]:
+        inner = rng.choice([0.2, 3.0])
+        at = abs(float(torque[0])) * (1 + rng.choice([-1, 1]) * 10 ** rng.uniform(-4, -1))
+        part.numbers |= {"inner": inner, "knot": at / (inner * part.numbers["stiffness"])}
+    keys = {"shaft": ("damping",), "disk": ("inertia", "load_torque", "viscous_load"), "hooke": ("angle",)}
+    some = [(i, key) for i, p in enumerate(shape.parts) for key in keys.get(p.kind, ()) if key in p.numbers]
+    return Shape(shape.parts, some)
+
+
+def check_staged(seed: int, boxes: int, size: int, points: int = 24) -> tuple[int, int]:
+    """``attack`` on a random chain whose springs have stages."""
+    rng = np.random.default_rng(seed)
+    return attack(rng, staged_shape(rng, size), boxes, Attack(points), f"staged {seed}")
+
+
 def check(seed: int, boxes: int, size: int, simple: bool, points: int = 24) -> tuple[int, int]:
     """``attack`` on a random chain."""
     rng = np.random.default_rng(seed)

@@ -28,7 +28,8 @@ SAMPLES = 128
 
 @dataclass
 class Part:
-    """``kind`` "shaft", "disk", "hooke", "tripod" or "ratio", and its numbers, each (lines,) or one for all."""
+    """``kind`` "shaft", "disk", "hooke", "tripod" or "ratio", and its numbers, each (lines,) or one for all. A shaft
+    with a ``knot`` [rad] has its stiffness beyond that, and ``inner`` times it within."""
 
     kind: str
     numbers: dict[str, Any] = field(default_factory=dict)
@@ -38,6 +39,10 @@ class Part:
         own = {key: float(np.broadcast_to(value, (line + 1,) if np.ndim(value) == 0 else np.shape(value))[line])
                for key, value in self.numbers.items()}  # fmt: skip
         kinds = {"shaft": tn.Shaft, "disk": tn.Disk, "hooke": tn.HookeJoint, "tripod": tn.TripodJoint}
+        if "knot" in own:
+            inner, knot = own.pop("inner"), own.pop("knot")
+            outer = own.pop("stiffness")
+            return tn.PiecewiseShaft.symmetric([(inner * outer, knot), (outer, None)], **own)
         if self.kind == "ratio":
             teeth = Fraction(own["ratio"]).limit_denominator(100)
             return tn.Ratio(teeth_in=12 * teeth.denominator, teeth_out=12 * teeth.numerator)
@@ -51,6 +56,15 @@ class _Group:
     mass: Any = 0.0
     damping: Any = 0.0
     stiffness: Any = 0.0
+
+
+def _in_stage(stiffness: Array, torque: Array, inner: Any, knot: Any) -> tuple[Array, Array]:
+    """Stiffness under a torque, and what the twist has beside torque over stiffness."""
+    outside = np.abs(torque) > inner * stiffness * knot
+    return (
+        np.where(outside, stiffness, inner * stiffness),
+        np.where(outside, np.sign(torque) * knot * (1 - inner), 0.0),
+    )
 
 
 def derivative(values: Array) -> Array:
@@ -68,7 +82,7 @@ class Chains:
         self.tau = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
         self.m, self.c, self.k = self._equations()
 
-    def _torques(self) -> list[Array]:
+    def torques(self) -> list[Array]:
         """Mean torque in each shaft: loads behind it, at mean speeds."""
         found, mean, speeds, loads = [], np.ones_like(self.speed), [], []
         for part in self.parts:
@@ -90,7 +104,7 @@ class Chains:
         mean, r, h = np.ones_like(omega), np.ones(shape), np.zeros(shape)
         n = sum(part.kind == "shaft" for part in self.parts)
         m, c, k = np.zeros((3, *shape, n, n))
-        unknown, torques, first = -1, iter(self._torques()), np.ones(shape)
+        unknown, torques, first = -1, iter(self.torques()), np.ones(shape)
 
         def a_rate() -> Array:
             return mean + derivative(periodic)
@@ -100,6 +114,7 @@ class Chains:
             if part.kind == "shaft":
                 torque = next(torques)
                 stiff, damp = (np.broadcast_to(part.numbers[key], omega.shape) for key in ("stiffness", "damping"))
+                stiff, beyond = _in_stage(stiff, torque, get("inner", 1.0), get("knot", 0.0))
                 near, unknown = unknown, unknown + 1
                 c[..., unknown, unknown] += damp
                 k[..., unknown, unknown] += stiff
@@ -111,7 +126,7 @@ class Chains:
                     k[..., unknown, near] -= stiff * r + damp * r_dot
                     c[..., near, unknown] -= damp * r
                     k[..., near, unknown] -= stiff * r
-                periodic = periodic + get("fork_offset", 0.0) + torque / stiff
+                periodic = periodic + get("fork_offset", 0.0) + torque / stiff + beyond
                 r, h, first = np.ones(shape), np.zeros(shape), a_rate()
             elif part.kind in ("hooke", "tripod"):
                 chi = mean * self.tau[:, None] + periodic - get("plane", 0.0)

@@ -348,8 +348,8 @@ BAD = [
         "Shaft 1.damping: would go from -0.1 to 0.1, and damping that reaches zero cannot be certified",
     ),
     (
-        lambda: tn.certify_stability(staged(), {"Disk 1.load_torque": 0.1}, (90.0, 100.0)),
-        "PiecewiseShaft 1 = -50: has stages, and its load varies within the box",
+        lambda: tn.certify_stability(staged(), {"Disk 1.load_torque": 0.95}, (90.0, 100.0)),
+        "PiecewiseShaft 1 = -2.5: is the torque at 95 rad/s in the box, whose middle works in stage 1 of 3",
     ),
     (lambda: tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.1}, (1.0, 2.0), most_boxes=0), "most_boxes = 0: must"),
     (lambda: tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.1}, (1.0, 2.0), within=0), "within = 0: must"),
@@ -398,7 +398,8 @@ BETWEEN = [
     ),
     (
         stages_without_load, {"Disk 1.load_torque": ("range", -50.0, 50.0)}, (94.0, 94.1),
-        lambda: stages_without_load(50.0), 94.05, "PiecewiseShaft 1 = 0: has stages",
+        lambda: stages_without_load(50.0), 94.05,
+        "PiecewiseShaft 1 = .*50: is the torque at 94.05 rad/s in the box",
     ),
 ]  # fmt: skip
 

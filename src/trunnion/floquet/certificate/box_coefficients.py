@@ -20,6 +20,7 @@ from trunnion.driveline.elements import Element
 from trunnion.driveline.parameters import Columns
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.loads import given_shares
 from trunnion.equations.stage_laws import has_stages
 from trunnion.floquet.certificate.waves import OUTWARD, Wave, affine
 
@@ -112,16 +113,16 @@ def box_coefficients(
     speed = replace(affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last), powers=powers)
     stiffness, damping = waves(co.stiffness), waves(co.damping, extra)
     constant, viscous, quadratic = waves(co.load), waves(co.viscous), waves(co.quadratic)
-    torque = _torques(assembly, near or speed, constant, viscous, quadratic)
+    torque = _torques(assembly, near or speed, constant, viscous, quadratic, table[:1])
     if near:
         torque = [Wave(one.parts, 0.0, one.powers) for one in torque]
     shift, untwisted_shift = waves(co.shift), waves(co.shift)
-    for e, compliance in enumerate(topo.compliances):
-        _put_twists(assembly, co, e, compliance.shafts, stiffness[e], torque[e], shift, compliance.number)
+    middle = assembly.coefficients(table[:1])
+    for e in range(len(topo.compliances)):
+        _put_twists(assembly, middle, e, stiffness[e], torque[e], shift)
     inertia, over_mass = waves(co.inertia), _inverses(assembly, co, ranges, many, last)
     tangents = {s: _tangent(assembly, s, ranges, many, last) for s in topo.joints}
     kept_tangents = {s: wave for s, wave in tangents.items() if wave is not None}
-    middle = assembly.coefficients(table[:1])
     return BoxCoefficients(
         speed=speed, stiffness=stiffness, damping=damping, torque=torque, inertia=inertia, constant=constant,
         viscous=viscous, quadratic=quadratic, tangents=kept_tangents, shift=shift,
@@ -149,54 +150,59 @@ def _elements(assembly: Assembly, one: NumberRange) -> list[int]:
 
 
 def _torques(
-    assembly: Assembly, speed: Wave, constant: list[Wave], viscous: list[Wave], quadratic: list[Wave]
+    assembly: Assembly, speed: Wave, constant: list[Wave], viscous: list[Wave], quadratic: list[Wave], row: Array
 ) -> list[Wave]:
     """Static torque of every compliance: what stations behind it resist with at their mean speeds."""
     topo, found = assembly.topology, []
-    for e, behind in enumerate(topo.stations_behind):
-        own = topo.mean_speeds[topo.reference[topo.compliances[e].far_group]]
-        torque = speed * 0.0
-        for s in behind.tolist():
-            if not (constant[s].size or viscous[s].size or quadratic[s].size):
-                continue
+    loads = dict[int, Wave]()
+    for s in range(len(topo.stations)):
+        if constant[s].size or viscous[s].size or quadratic[s].size:
             turning = speed * abs(float(topo.mean_speeds[s]))
             load = constant[s] + (viscous[s] + quadratic[s] * turning) * turning
-            torque = torque + load * (-abs(float(topo.mean_speeds[s])) / float(own))
+            loads[s] = load * abs(float(topo.mean_speeds[s]))
+    # Constants hold what drives carry at the middle speed: they carry what is out of balance at others too.
+    share = given_shares(topo, assembly.packed.column, row)[0] if topo.free else np.zeros(len(topo.stations))
+    unbalanced = sum(loads.values(), speed * 0.0) if share.any() else speed * 0.0
+    for e, behind in enumerate(topo.stations_behind):
+        own = float(topo.mean_speeds[topo.reference[topo.compliances[e].far_group]])
+        torque = speed * 0.0
+        for s in behind.tolist():
+            if s in loads:
+                torque = torque + loads[s] * (-1 / own)
+            if share[s]:
+                torque = torque + unbalanced * (float(share[s] / share.sum()) / own)
         found.append(torque)
     return found
 
 
 def _put_twists(
-    assembly: Assembly,
-    co: LineCoefficients,
-    e: int,
-    shafts: tuple[int, ...],
-    stiffness: Wave,
-    torque: Wave,
-    shift: list[Wave],
-    number: int,
+    assembly: Assembly, middle: LineCoefficients, e: int, stiffness: Wave, torque: Wave, shift: list[Wave]
 ) -> None:
     """Add to the shift behind each shaft of a compliance the twist that its torque makes."""
     from trunnion.equations.coefficients import shaft_stiffness
 
     topo = assembly.topology
+    shafts, number = topo.compliances[e].shafts, topo.compliances[e].number
     in_stage = staged(assembly.line.elements[shafts[0]])
     for i in shafts:
         if (i, number) not in topo.behind or not (torque.size or in_stage):
             continue
         behind = topo.behind[i, number]
         if in_stage:
-            row = assembly.table(1, float(co.speed[0]))
-            twist = float(assembly.coefficients(row).twist[0, e])
-            shift[behind] = shift[behind] + affine(
-                twist, {}, shift[behind].parts.shape[0] - 1, shift[behind].last, STATED * abs(twist)
-            )
+            shift[behind] = shift[behind] + twist_in_stage(middle, e, stiffness, torque)
         elif len(shafts) == 1:
             shift[behind] = shift[behind] + torque * stiffness.inverse()
         else:
-            own = float(shaft_stiffness(assembly, assembly.table(1, float(co.speed[0])), i, number)[0])
+            own = float(shaft_stiffness(assembly, assembly.table(1, float(middle.speed[0])), i, number)[0])
             twisted = torque * (1 / own)
             shift[behind] = shift[behind] + Wave(twisted.parts, twisted.rest + STATED * twisted.size, twisted.powers)
+
+
+def twist_in_stage(middle: LineCoefficients, e: int, stiffness: Wave, torque: Wave) -> Wave:
+    """Twist [rad] of a spring with stages under ``torque`` in the stage of the ``middle``."""
+    twist, carried = float(middle.twist[0, e]), float(middle.torque[0, e])
+    found = (torque - carried) * stiffness.inverse() + twist
+    return Wave(found.parts, found.rest + STATED * abs(twist), found.powers)
 
 
 def _inverses(

@@ -23,6 +23,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.topology import LinkKind, require_period
 from trunnion.floquet.certificate.box_coefficients import BoxCoefficients, NumberRange, box_coefficients
 from trunnion.floquet.certificate.waves import OUTWARD, Wave, affine, ahead, turning
+from trunnion.floquet.certificate.working_stages import stages_held
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.hooke import CrossLaw
 from trunnion.laws.joint import JointLaw
@@ -76,8 +77,15 @@ def box_matrix(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence
 
 
 def box_line(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> BoxLine:
-    """The numbers of the box of all ``speeds`` and all values of ``ranges``."""
+    """The numbers of the box of all ``speeds`` and all values of ``ranges``.
+
+    Raises
+    ------
+    NotEnclosed : a load may take a spring out of the stage in which it works in the middle.
+    """
     last = harmonics_needed(assembly, ranges, speeds)
+    if not stages_held(assembly, speeds, ranges):
+        raise NotEnclosed
     return BoxLine(assembly, box_coefficients(assembly, speeds, ranges, last), 1 + len(ranges), last)
 
 

@@ -33,6 +33,8 @@ from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
 from trunnion.floquet.certificate.judge import JudgedBox, judge
 from trunnion.floquet.certificate.own_requirements import require_enclosed, swings_by_itself
 from trunnion.floquet.certificate.requirements import require_linear
+from trunnion.floquet.certificate.working_stages import working_stages
+from trunnion.floquet.tolerance.parameter_intervals import table_at
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, internal, labelled, variable
@@ -73,6 +75,7 @@ class StabilityCertificate(Result):
     findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
     ended: str = attribute("what ended the search before its last box, as a clause", default="")
     unstable_line: Driveline | None = internal("the counterexample", default=None)
+    stages: tuple[str, ...] = attribute("in which springs with stages work where proved, a clause each", default=())
 
     def declared(self) -> Iterator[Variable | Attribute]:
         """The verdict, the counterexample, and the boxes that stay open."""
@@ -117,6 +120,8 @@ class StabilityCertificate(Result):
         where = "" if self.verdict == "proved stable" else " where proved"
         known = self.decay > 0  # not NaN, nor a rate too slow to be found
         yield boxes + (f"; disturbances die out at {self.decay:.3g} 1/s at least{where}" if known else "")
+        for clause in self.stages:
+            yield f"  {clause}"
         if self.about_own_motion:
             proved = ", proved to exist" if len(self.proved_low) and self.counterexample is None else ""
             yield f"  about the line's own periodic motion{proved}"
@@ -138,8 +143,8 @@ def certify_stability(
     Parameters
     ----------
     line : whose shafts may branch and close no loop; about its motion without vibration, as ``stability`` judges it,
-        with the same multipliers set aside; a free–free line with joint angles about its own periodic motion, where a
-        torque depends on its speed.
+        with the same multipliers set aside, springs with stages in the stage in which their load holds them; a
+        free–free line with joint angles about its own periodic motion, where a torque depends on its speed.
     tolerances : as of ``tolerance_study``, None for those of the description, which may have none, {} for none: the
         line as it is. Of stiffness, damping, inertia, fork offsets, joint planes, loads, and the angle of a HookeJoint.
         Normal distributions count as three standard deviations either way.
@@ -198,6 +203,7 @@ def certify_stability(
         findings=left_out("certify_stability", assembly.line),
         ended=found.ended,
         unstable_line=found.unstable,
+        stages=space.stages(proved),
     )
 
 
@@ -224,6 +230,13 @@ class _Space(BoxSpace):
         if self.own is not None:
             return self.own.judged(self.span(box), self.ranges(box))
         return judge(self.assembly, self.span(box), self.ranges(box), by_energy=by_energy)
+
+    def stages(self, boxes: Array) -> tuple[str, ...]:
+        """In which springs work in ``boxes`` (boxes, 2, variables), a clause each."""
+        values = self.values(boxes.mean(axis=1))
+        rows = table_at(self.assembly, self.spreads, values[:, 1:])
+        rows[:, 0] = values[:, 0]
+        return tuple(dict.fromkeys(str(one) for one in working_stages(self.assembly, rows)))
 
     def unstable_at(self, shares: Array) -> tuple[Driveline, dict[str, float]] | None:
         """The line at ``shares`` (variables,) and its numbers, if ``stability`` finds it unstable."""

@@ -18,12 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from trunnion.arrays import Array, Complex
 from trunnion.equations.coefficients import Assembly
-from trunnion.floquet.certificate.box_coefficients import BoxCoefficients
+from trunnion.floquet.certificate.box_coefficients import BoxCoefficients, twist_in_stage
 from trunnion.floquet.certificate.box_equations import BoxLine, Walk, period_rate, speed_modulus
 from trunnion.floquet.certificate.own_stages import OwnStage
 from trunnion.floquet.certificate.waves import Wave
@@ -91,8 +92,21 @@ class MotionEquations:
         """Twist of every spring under the mean loads, in the middle (spring,) [rad]."""
         found = np.array([t.mean.real / k.mean.real for t, k in zip(self.co.torque, self.co.stiffness, strict=True)])
         for one in self.stages:
-            found[one.spring] = one.twist
+            found[one.spring] = self.loaded[one.spring].mean.real
         return found
+
+    @cached_property
+    def loaded(self) -> dict[int, Wave]:
+        """Twist θ̄ of every spring with stages under the mean loads of each line, by its stage."""
+        co = self.co
+        return {
+            one.spring: twist_in_stage(co.middle, one.spring, co.stiffness[one.spring], co.torque[one.spring])
+            for one in self.stages
+        }
+
+    def beyond(self, motion: MotionWaves) -> tuple[Wave, ...]:
+        """By how much each spring with stages twists more than its stage's θ̄ of the middle."""
+        return tuple(self.loaded[one.spring] - one.twist + motion.twist[one.spring] for one in self.stages)
 
     @property
     def size(self) -> int:

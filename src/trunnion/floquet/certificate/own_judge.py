@@ -115,7 +115,7 @@ class OwnMotionLine:
         own = self._equations(speeds, ranges, motions, further)
         found = solved(own, begun(own, motions), _slowness(own, speeds, further))
         if found is not None:
-            require_stages_kept(self.assembly, own.stages, found.twist, middle)
+            require_stages_kept(self.assembly, own.stages, own.beyond(found), middle)
         return None if found is None else (own, found)
 
     def _equations(
@@ -124,18 +124,20 @@ class OwnMotionLine:
         assembly, topo = self.assembly, self.assembly.topology
         middle = sum(speeds) / 2
         last = max(harmonics_needed(assembly, ranges, speeds), motions.h)
-        many, stages = 1 + len(ranges) + POWERS, own_stages(assembly, assembly.table(1, middle))
+        row = assembly.table(1, middle)
+        for one in ranges:
+            one.columns.put(row, np.array([(one.low + one.high) / 2]))
+        many, stages = 1 + len(ranges) + POWERS, own_stages(assembly, row)
         held, near = speeds, None
         if topo.free:
             # The first parameter is a torque, not the speed. Twists count from those of the mean loads at the speed
-            # that it makes, but where a spring has stages: they are asked of the twist beyond one that is fixed.
+            # that it makes.
             held = middle, middle
             mean, half = _asked(speeds, further)
-            near = None if stages else replace(affine(mean, {1: half}, many, last), powers=POWERS).inverse()
+            near = replace(affine(mean, {1: half}, many, last), powers=POWERS).inverse()
         co = box_coefficients(assembly, held, ranges, last, POWERS, near)
         drive = np.zeros(len(topo.stations))
         if topo.free:
-            row = assembly.table(1, middle)
             drive = -drive_torques(topo, drive_places(topo, assembly.packed.column, row), np.ones(1))[0]
         return MotionEquations(assembly, co, many, last, drive, stages, POWERS)
 
@@ -203,7 +205,7 @@ def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float
         if not known.proved:
             return JudgedMotion(missed(known.excess))
         if needed < height:
-            if not all(one.holds(near.twist[one.spring]) for one in own.stages):
+            if not all(one.holds(at) for one, at in zip(own.stages, own.beyond(near), strict=True)):
                 return JudgedMotion(missed())
             uncovered = _uncovered(own, near, speeds)
             if uncovered > 0:

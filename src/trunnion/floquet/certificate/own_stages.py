@@ -22,7 +22,7 @@ from trunnion.floquet.certificate.waves import OUTWARD, Wave
 
 @dataclass(frozen=True)
 class OwnStage:
-    """Of one spring: the twist θ̄ of its mean load, and from where to where its stage reaches [rad]."""
+    """Of one spring: the twist θ̄ of a mean load, and from where to where its stage reaches [rad]."""
 
     spring: int
     twist: float
@@ -61,18 +61,19 @@ def stage_obstacle(element: PiecewiseShaft | GearPair) -> str:
 
 
 def require_stages_kept(
-    assembly: Assembly, stages: tuple[OwnStage, ...], twist: tuple[Wave, ...], speed: float
+    assembly: Assembly, stages: tuple[OwnStage, ...], beyond: tuple[Wave, ...], speed: float
 ) -> None:
-    """Refuse a motion that leaves the stage of a spring: no smaller box would help.
+    """Refuse a motion that leaves the stage of a spring, by its twists ``beyond`` that of each of the ``stages``: no
+    smaller box would help.
 
     Raises
     ------
     InputError : names the spring, its twists and its stage.
     """
-    for one in stages:
-        order = np.arange(-twist[one.spring].last, twist[one.spring].last + 1)
+    for one, twist in zip(stages, beyond, strict=True):
+        order = np.arange(-twist.last, twist.last + 1)
         angles = 2 * np.pi * np.arange(4 * len(order)) / (4 * len(order))
-        at = one.twist + (np.exp(1j * np.outer(angles, order)) @ twist[one.spring].parts[0]).real
+        at = one.twist + (np.exp(1j * np.outer(angles, order)) @ twist.parts[0]).real
         if not (one.low < at.min() and at.max() < one.high):
             ends = [np.degrees(value) for value in (at.min(), at.max(), one.low, one.high)]
             raise InputError(

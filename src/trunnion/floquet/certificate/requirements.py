@@ -20,6 +20,7 @@ from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.floquet.certificate.box_coefficients import ANGLE, STATED, STEEPEST, NumberRange, staged
+from trunnion.floquet.certificate.working_stages import follows_otherwise, require_stages_held
 
 AFFINE = (
     "stiffness", "damping", "mesh_stiffness", "mesh_damping", "loss_factor", "inertia", "fork_offset", "plane",
@@ -69,15 +70,14 @@ def require_linear(
                     key=one.label, remedy="keep it on one side of zero",
                 )  # fmt: skip
     looked_at = _looked_at(assembly, speeds)
+    require_stages_held(assembly, looked_at, ranges)
     _require_even(assembly, looked_at)
     loaded = any(place[c][1] in AFFINE[-3:] for one in ranges for c in one.columns.index.tolist())
-    # About its own motion each box has loads of its own speed, and the whole tube is asked to stay in the stage.
-    torque, varies = _carried(assembly, looked_at[-1:] if own else looked_at, ranges)
+    torque, varies = _carried(assembly, looked_at, ranges)  # about its own motion no such spring is enclosed
     for e, compliance in enumerate(topo.compliances):
-        element = line.elements[compliance.shafts[0]]
-        if staged(element) and (varies[e] or (torque[e] and loaded)):
+        if follows_otherwise(assembly, e) and (varies[e] or (torque[e] and loaded)):
             raise InputError(
-                "has stages, and its load varies within the box: whether it stays in one stage is not followed",
+                "takes stiffness or damping from its load, which varies within the box, and is not followed there",
                 element=line.names[compliance.shafts[0]], value=float(torque[e]),
                 remedy="write a Shaft of its stiffness under load, or give one speed and no tolerance of loads",
             )  # fmt: skip

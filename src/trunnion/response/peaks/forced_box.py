@@ -23,7 +23,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, line_harmonics
 from trunnion.equations.topology import LinkKind, require_period
 from trunnion.errors import InputError
-from trunnion.floquet.certificate.box_coefficients import STATED, NumberRange, staged
+from trunnion.floquet.certificate.box_coefficients import STATED, NumberRange, staged, twist_in_stage
 from trunnion.floquet.certificate.box_equations import (
     BoxEntries,
     BoxLine,
@@ -347,8 +347,7 @@ class _ForcedLine:
         co, compliance = self.line.co, self.line.assembly.topology.compliances[e]
         if not staged(self.line.assembly.line.elements[compliance.shafts[0]]):
             return co.torque[e] * co.stiffness[e].inverse() if co.torque[e].size else self.line.number(0.0)
-        twist = float(co.middle.twist[0, e])
-        return affine(twist, {}, self.line.parameters, self.line.last, STATED * abs(twist))
+        return twist_in_stage(co.middle, e, co.stiffness[e], co.torque[e])
 
     def _accelerations(
         self, motion: Walk, found: BoxEntries, rows: dict[tuple[int, int], Wave], base: dict[int, Wave]
