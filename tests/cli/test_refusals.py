@@ -66,8 +66,12 @@ CASES = [
     (("certify-stability", "line.toml", "--within", "0 s"), ("--within = '0 s': must be a positive time",)),
     (("certify-stability", "line.toml", "-t", "Shaft 1.damping=150%"), ("Shaft 1.damping=150%", "is not a tolerance")),
     (
-        ("certify-stability", "staged.toml", "-t", "Disk 1.load_torque=10%", "--speed", "90:100"),
-        ("PiecewiseShaft 1 = -50: has stages, and its load varies", "write a Shaft of its stiffness under load"),
+        ("certify-stability", "staged.toml", "-t", "Disk 1.load_torque=95%", "--speed", "90:100"),
+        (
+            "PiecewiseShaft 1 = -2.5: is the torque",
+            "works in stage 1 of 3, up to -5 N m",
+            "narrow the tolerances of loads",
+        ),
     ),
     (
         ("certify-stability", "ratio.toml", "-t", "Ratio 1.ratio=10%", "--speed", "90:100"),
