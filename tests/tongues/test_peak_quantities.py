@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import trunnion as tn
 
@@ -207,3 +208,38 @@ def test_a_drive_behind_its_loads_carries_what_they_take_at_every_speed(turned: 
     for k, (name, own) in enumerate(mean.items()):
         bound = float(found.peak_torque_bound[found.springs.index(name)])
         assert own + swing[k] <= bound < 1.03 * own, (name, bound)
+
+
+def plate(angle: float) -> tn.Driveline:
+    """Stiffer from 0.065 rad and 130 N m on, where its load of 150 N m and more holds it."""
+    spring = tn.PiecewiseShaft.symmetric([(2e3, 0.065), (9e3, None)], damping=40.0, name="plate")
+    load = tn.Disk(inertia=0.8, load_torque=150.0, viscous_load=0.2, name="load")
+    limits = [tn.Limit(of="plate", max_torque=2000.0)]
+    return tn.Driveline(
+        [tn.ConstantSpeed(), tn.HookeJoint(angle=angle), spring, load],
+        limits=limits, operation=tn.Operation(speed=60.0, speed_range=(20.0, 160.0)),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("angle", "leaves"), [(0.17, True), (0.02, False)])
+def test_bounds_say_where_a_swing_may_leave_the_stage(angle: float, leaves: bool) -> None:
+    """By an integration of the line's own at 57 rad/s, and the bounds; ``assess`` proves nothing of such a line."""
+    speed, c, s = 57.0, np.cos(angle), np.sin(angle)
+
+    def torque(phi: float, x: np.ndarray) -> tuple[float, float]:
+        """Of the spring, and how fast its far end turns beyond its near one; x: turned beyond that, speed."""
+        relative = x[1] - speed * c / (1 - (s * np.cos(phi)) ** 2)
+        inside = 2e3 * x[0] if abs(x[0]) < 0.065 else np.sign(x[0]) * 130.0 + 9e3 * (x[0] - np.sign(x[0]) * 0.065)
+        return inside, relative
+
+    def rates(phi: float, x: np.ndarray) -> list[float]:
+        elastic, relative = torque(phi, x)
+        return [relative / speed, (-elastic - 40.0 * relative - 150.0 - 0.2 * x[1]) / 0.8 / speed]
+
+    run = solve_ivp(rates, (0, 40 * np.pi), [-0.07, speed], rtol=1e-8, atol=1e-10, dense_output=True)
+    elastic = [torque(phi, run.sol(phi))[0] for phi in np.linspace(36 * np.pi, 40 * np.pi, 400)]
+    assert (max(elastic) > -130.0) == leaves
+    found = tn.certify_peaks(plate(angle), {}, (20.0, 160.0), most_boxes=40)
+    assert ("plate works in its stage 1 of 3, up to -130 N m, and may swing beyond it" in str(found)) == leaves
+    check = next(one for one in tn.assess(plate(angle)).checks if "plate" in one.name)
+    assert check.proof == "searched, not proved" or not leaves

@@ -36,6 +36,7 @@ from trunnion.response.peaks.quantities import (
     TWIST,
     in_unit,
 )
+from trunnion.response.peaks.stages_left import stages_left
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity
@@ -230,6 +231,7 @@ def _certificate(space: BoxSpace, found: PeakSearch, gap: float) -> PeakCertific
     def of(values: Array, measure: str) -> Array:
         return values[measures == measure]
 
+    whole = space.ranges(np.array([np.zeros(space.size), np.ones(space.size)]))
     limited = np.isfinite(found.limit)
     if found.counterexample is not None:
         verdict = "counterexample"
@@ -273,7 +275,11 @@ def _certificate(space: BoxSpace, found: PeakSearch, gap: float) -> PeakCertific
             AllowedPeak(*found.quantities[k], *map(float, (found.upper[k], found.computed[k], found.limit[k])))
             for k in np.flatnonzero(limited)
         ),
-        findings=(Finding(Gravity.NOTE, STEADY), *left_out("certify_peaks", assembly.line)),
+        findings=(
+            Finding(Gravity.NOTE, STEADY),
+            *(Finding(Gravity.CAUTION, said) for said in stages_left(assembly, space.speeds, whole, found.upper)),
+            *left_out("certify_peaks", assembly.line),
+        ),
         ended=found.ended,
         line=found.line,
     )

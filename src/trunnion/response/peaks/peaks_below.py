@@ -16,6 +16,8 @@ from trunnion.floquet.certificate.certify import require_provable
 from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.response.peaks.box_peaks import BoxPeaks, box_peaks
 from trunnion.response.peaks.forced_box import require_forcing
+from trunnion.response.peaks.quantities import quantities_of
+from trunnion.response.peaks.stages_left import stages_left
 from trunnion.waiting import time_is_up, to_the_end
 
 
@@ -66,6 +68,9 @@ def peaks_below(
     limit, easy = np.array([one.limit for one in asked]), np.array([one.easy for one in asked])
     found.run(limit, easy)
     found.run(limit, np.ones(len(asked), dtype=bool))
+    upper = np.max([np.full(len(quantities_of(assembly)), -np.inf), *(peaks.upper for _, peaks in found.boxes)], axis=0)
+    if found.boxes and (left := list(stages_left(assembly, speeds, (), upper))):
+        return PeakBounds(np.full(len(asked), np.inf), found.judged, left[0].split(":")[0])
     return PeakBounds(found.upper, found.judged, found.ended)
 
 
