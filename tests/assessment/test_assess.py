@@ -8,6 +8,7 @@ import json
 import math
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from typer.testing import CliRunner
 
 import trunnion as tn
 from trunnion.cli import app
+from trunnion.design.assessment import assessment_input
 from trunnion.design.assessment.check import Status
 from trunnion.design.assessment.joint_angles import allowed_angle
 from trunnion.design.assessment.measures import permissible_stress
@@ -23,6 +25,7 @@ from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.overview import overview
 from trunnion.reporting.tables import with_signs
 from trunnion.response.orders.result import frequency_factor
+from trunnion.steady.orders.spectrum import order_spectrum
 
 J1, J2, K, C, T = 0.2, 0.8, 1e4, 2.0, 100.0
 
@@ -497,3 +500,23 @@ def test_beyond_the_range_every_load_case_is_looked_at_and_what_no_table_covers_
 def test_sentences_of_the_report_have_the_signs_of_units():
     said = with_signs("12.5 deg, 3 N*m*s/rad, 2 kg*m^2 and 300 rad/s^2 of Shaft *.damping, 5 degrees")
     assert said == "12.5°, 3 N m s/rad, 2 kg m² and 300 rad/s² of Shaft *.damping, 5 degrees"
+
+
+def test_a_driven_line_with_unstable_ranges_has_its_response_solved_once_at_every_speed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """How far it swings was looked at over the whole range; the search takes what of that is stable as it is."""
+    looked: list[float] = []
+
+    def counted(assembly: Any, speed: Any, **more: Any) -> Any:
+        looked.extend(speed.tolist())
+        return order_spectrum(assembly, speed, **more)
+
+    parts: list[Any] = [tn.ConstantSpeed()]
+    for angle in (0.3, 0.0):
+        parts += [tn.Shaft(stiffness=1.0, damping=0.002), tn.Disk(inertia=1.0), tn.HookeJoint(angle=angle)]
+    line = tn.Driveline(parts[:-1], limits=[tn.Limit(of="Shaft 1", max_torque=1e3)])
+    monkeypatch.setattr(assessment_input, "order_spectrum", counted)
+    check = tn.assess(line, (0.5, 1.8)).check("parametric stability")
+    assert len(check.barred) == 3
+    assert len(looked) == len(set(looked)) > 100

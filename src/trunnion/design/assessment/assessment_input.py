@@ -33,6 +33,7 @@ from trunnion.response.orders.result import OrderResponse
 from trunnion.response.ranges.largest import PASSED, Largest, first_speeds, search, sharpened, thinned
 from trunnion.results.verdict import Verdict
 from trunnion.results.words import Words
+from trunnion.steady.orders.amplitudes import joined
 from trunnion.steady.orders.spectrum import order_spectrum
 from trunnion.waiting import OutOfTime
 
@@ -238,7 +239,7 @@ class LoadCaseResponse:
             first = thinned(self.around, pieces, quantities, self.effort.costly)
         return search(
             self.assembly, self.respond, first, quantities,
-            tolerance=self.effort.tolerance, passed=self.effort.passed, known=self.__dict__.get("first_look"),
+            tolerance=self.effort.tolerance, passed=self.effort.passed, known=self._known_at(np.concatenate(first)),
         )  # fmt: skip
 
     @cached_property
@@ -272,6 +273,19 @@ class LoadCaseResponse:
             return self.respond(np.concatenate(self._first_speeds))
         except (InputError, ComputationError):  # as the search then says
             return None
+
+    def _known_at(self, speeds: Array) -> OrderResponse | None:
+        """The response at rising ``speeds`` where parts of it are known already, the others solved; None where nothing
+        is."""
+        if "first_look" in self.__dict__:
+            return self.first_look
+        before = self.__dict__.get("_everywhere")
+        if before is None or np.any(np.diff(speeds) <= 0) or not (shared := np.isin(before.speed, speeds)).any():
+            return None
+        parts, missing = [before.spectrum.take(np.flatnonzero(shared))], np.setdiff1d(speeds, before.speed)
+        if len(missing):
+            parts.append(self.respond(missing).spectrum)
+        return response_of_spectrum(self.assembly, joined(parts)[0], remarked=False)
 
     def surely_exceeds(self, name: str) -> bool:
         """Whether the first look shows already that the check called ``name`` is exceeded."""
