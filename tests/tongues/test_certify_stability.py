@@ -535,3 +535,26 @@ def test_drawn_along_the_speed_without_tolerances() -> None:
     axes = found.plot()
     words = [text.get_text() for text in axes.get_legend().get_texts()]
     assert found.verdict == "proved stable" and words[0].startswith("proved stable (")
+
+
+def test_stages_of_teeth_whose_stiffness_scatters_are_not_held_by_any_load() -> None:
+    """With a fifth less stiffness the play ends at 40 N m, and a load of 45 N m works beyond it: no theorem of one
+    stage holds, though the middle carries nothing."""
+    teeth = tn.GearPair(
+        base_radius_in=0.05,
+        base_radius_out=0.1,
+        mesh_stiffness=1e7,
+        mesh_damping=100.0,
+        backlash=2e-4,
+        stiffness_ratio=0.5,
+    )
+    shaft = tn.Shaft(stiffness=2e4, damping=2.0)
+    line = tn.Driveline([tn.ConstantSpeed(), shaft, tn.Disk(inertia=0.5), teeth, tn.Disk(inertia=1.0)])
+    assert (
+        tn.certify_stability(line, {"GearPair 1.mesh_stiffness": 0.2}, speeds=(90.0, 100.0)).verdict == "proved stable"
+    )
+    loads = {"Disk 2.load_torque": ("range", -45.0, 45.0)}
+    (clause,) = tn.certify_stability(line, loads, speeds=(90.0, 100.0)).stages
+    assert clause == "GearPair 1 works in its stage 2 of 3, from -50 to 50 N m"
+    with pytest.raises(tn.InputError, match=r"GearPair 1.mesh_stiffness: belongs to a spring with stages"):
+        tn.certify_stability(line, {"GearPair 1.mesh_stiffness": 0.2, **loads}, speeds=(90.0, 100.0))

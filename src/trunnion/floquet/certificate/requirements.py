@@ -43,6 +43,8 @@ def require_linear(
     InputError : names the parameter or the element, and the value.
     """
     line, topo, place = assembly.line, assembly.topology, list(assembly.packed.place)
+    looked_at = _looked_at(assembly, speeds)
+    torque, varies = _carried(assembly, looked_at, ranges)  # about its own motion no such spring is enclosed
     for one in ranges:
         for k, column in enumerate(one.columns.index.tolist()):
             element, key = place[column]
@@ -63,17 +65,15 @@ def require_linear(
                     "would bend a free–free line, which then moves in its own periodic motion", key=one.label,
                     remedy="put a ConstantSpeed in front",
                 )  # fmt: skip
-            _require_single(assembly, one, element, key)
+            _require_single(assembly, one, element, key, under_load=bool(torque.any() or varies.any()))
             if key in ("damping", "mesh_damping") and ends[0] * ends[1] <= 0:
                 raise InputError(
                     f"would go from {one.low:.6g} to {one.high:.6g}, and damping that reaches zero cannot be certified",
                     key=one.label, remedy="keep it on one side of zero",
                 )  # fmt: skip
-    looked_at = _looked_at(assembly, speeds)
     require_stages_held(assembly, looked_at, ranges)
     _require_even(assembly, looked_at)
     loaded = any(place[c][1] in AFFINE[-3:] for one in ranges for c in one.columns.index.tolist())
-    torque, varies = _carried(assembly, looked_at, ranges)  # about its own motion no such spring is enclosed
     for e, compliance in enumerate(topo.compliances):
         if follows_otherwise(assembly, e) and (varies[e] or (torque[e] and loaded)):
             raise InputError(
@@ -143,8 +143,9 @@ def _speed_of(assembly: Assembly, speed: float) -> Array:
     return np.abs(assembly.topology.mean_speeds) * speed
 
 
-def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str) -> None:
-    """Refuse what scatters in springs in series or with stages, of which only the whole enters the equations."""
+def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str, *, under_load: bool) -> None:
+    """Refuse what scatters in springs in series, of which only the whole enters the equations, or in those with stages
+    ``under_load``, be it in a part of the box: their stages would end at other torques."""
     for compliance in assembly.topology.compliances:
         if element not in compliance.shafts or key in ("fork_offset", "plane", "inertia"):
             continue
@@ -154,7 +155,7 @@ def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str
                 "its own", key=one.label, remedy="write them as one Shaft, or put a Disk between",
             )  # fmt: skip
         in_stage = staged(assembly.line.elements[element]) and key != "mesh_damping"
-        if in_stage and (key != "mesh_stiffness" or assembly.coefficients(assembly.table(1, 1.0)).torque.any()):
+        if in_stage and (key != "mesh_stiffness" or under_load):
             raise InputError(
                 "belongs to a spring with stages, and cannot scatter in a certificate under load", key=one.label,
                 remedy="write a Shaft of its stiffness under load",
