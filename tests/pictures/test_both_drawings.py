@@ -280,3 +280,20 @@ def test_a_legend_shows_lines_with_marks_as_they_are_drawn() -> None:
     for handle, text in zip(legend.get_lines(), legend.get_texts(), strict=True):
         own = curves[text.get_text()]
         assert handle.get_linestyle() == own.get_linestyle() and handle.get_marker() == own.get_marker()
+
+
+def test_curves_of_one_point_are_told_apart_by_shapes_in_the_legend_too() -> None:
+    roles = ["sum", *(curve(k) for k in range(5)), "limit 0"]
+    items = [Line([3.0], [float(k + 1)], role, role) for k, role in enumerate(roles)]
+    one = panel(*items)
+    rows_of = drawn(one)
+    shapes = list(rows_of["marks"]["marker"])
+    assert len(set(shapes)) == len(roles) and shapes[-1] == "dash" and not len(rows_of["lines"]["xs"])
+    assert list(rows_of["keys"]["marker"])[: len(roles)] == shapes
+    assert all(kind == "lone mark" for _, _, kind in Drawn(one).entries)
+    axes = draw(Picture((one,)))
+    points = {line.get_label(): line.get_marker() for line in axes.get_lines()}
+    legend = axes.get_legend()
+    assert legend is not None and len(set(points.values())) == len(roles)
+    for handle, text in zip(legend.get_lines(), legend.get_texts(), strict=True):
+        assert handle.get_marker() == points[text.get_text()] and handle.get_linestyle() == "None"

@@ -24,6 +24,7 @@ from trunnion.pictures.shared import stands
 from trunnion.pictures.stability_chart import stability_chart
 from trunnion.pictures.tongues import edges_of
 from trunnion.reporting import tables
+from trunnion.results.counts import counted
 from trunnion.results.drawing import described
 from trunnion.results.speeds import speed_factor
 from trunnion.results.words import Words
@@ -313,7 +314,8 @@ def worst(result: Any, unit: str) -> Plain:
     k = int(np.nanargmax(share)) if np.isfinite(share).any() else int(most.argmax())
     name, at = result.springs[k], Words(unit).speed(float(result.speed[int(peak[:, k].argmax())]))
     of = f" of {limits[k]:.5g} N m allowed ({share[k]:.0%})" if np.isfinite(share[k]) else ""
-    said = f"{name}: {most[k]:.5g} N m{of} at {at}, of {len(result.speed)} speeds looked at, the line as stated"
+    looked_at = counted(len(result.speed), "speed")
+    said = f"{name}: {most[k]:.5g} N m{of} at {at}, of {looked_at} looked at, the line as stated"
     return {"picture": orders.torque_by_order(result, spring=name, unit=unit), "said": said}
 
 

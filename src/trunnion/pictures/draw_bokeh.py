@@ -34,7 +34,7 @@ from bokeh.plotting.contour import contour_data
 
 from trunnion.arrays import Array
 from trunnion.pictures import picture as described
-from trunnion.pictures.looks import INK, PALETTES, WHITE, Look, look
+from trunnion.pictures.looks import INK, PALETTES, WHITE, Look, lone, look
 from trunnion.pictures.picture import MARGIN, Axis, Panel, Picture, columns, edges, runs, spread
 
 PIXELS, POINT = 74, 4 / 3
@@ -404,19 +404,22 @@ def _entries(panel: Panel) -> list[tuple[str, str, str]]:
     for item in every:
         if name := getattr(item, "name", ""):
             kind = item.kind if isinstance(item, described.Key) else kinds.get(type(item), "area")
-            marked = kind == "line" and bool(look(item.role).marker)
-            found.append((item.role, name, "marked line" if marked else kind))
+            if isinstance(item, described.Line) and np.isfinite(np.asarray(item.x) + np.asarray(item.y)).sum() == 1:
+                kind = "lone mark"
+            elif kind == "line" and look(item.role).marker:
+                kind = "marked line"
+            found.append((item.role, name, kind))
     return found
 
 
 def _parts(kind: str) -> list[str]:
     """Which glyphs make an entry of the legend."""
-    return ["line", "mark"] if kind == "marked line" else [kind]
+    return ["line", "mark"] if kind == "marked line" else ["mark"] if kind == "lone mark" else [kind]
 
 
 def _key(role: str, kind: str) -> tuple[Any, ...]:
     """An entry of the legend, which stands nowhere in the picture."""
-    one = look(role)
+    one = lone(role) if kind == "lone mark" else look(role)
     nowhere = [np.nan, np.nan]
     area = _area(one, "")
     if kind == "area":
@@ -466,8 +469,10 @@ def _line(item: described.Line, panel: Panel) -> list[tuple[str, tuple[Any, ...]
     one, (x, y) = look(item.role), _xy(panel, item.x, item.y)
     rows: list[tuple[str, tuple[Any, ...]]] = [("lines", (x, y, *_stroke(one, _says(item))))]
     known = np.flatnonzero(np.isfinite(x + y))
-    if one.marker or len(known) == 1:
-        few = known if one.every or len(known) == 1 else known[:: max(len(known) // FEW, 1)]
+    if len(known) == 1:
+        return [("marks", _at(x[known[0]], y[known[0]], lone(item.role), _says(item)))]
+    if one.marker:
+        few = known if one.every else known[:: max(len(known) // FEW, 1)]
         rows += [("marks", _at(x[k], y[k], one, _says(item))) for k in few]
     return rows
 

@@ -30,7 +30,7 @@ from trunnion.arrays import Array
 from trunnion.pictures import picture as described
 from trunnion.pictures.formats import check_format
 from trunnion.pictures.literal_figure import LiteralFigure
-from trunnion.pictures.looks import FAINT, GRID, INK, PALETTES, Look, look
+from trunnion.pictures.looks import FAINT, GRID, INK, PALETTES, Look, lone, look
 from trunnion.pictures.numbers import written
 from trunnion.pictures.picture import Axis, Panel, Picture, columns, edges, spread
 from trunnion.writing import written_whole
@@ -369,7 +369,7 @@ def _line(axes: Axes, item: described.Line, panel: Panel) -> list[Artist]:
             k = int(item.role.rpartition(" ")[2]) if item.role[-1].isdigit() else 0
             marks["markevery"] = (0.02 * (k % 7), 0.14)
     if np.isfinite(x + y).sum() == 1:
-        return _lone_point(axes, item, one)
+        return _lone_point(axes, item)
     if panel.polar:
         x = np.radians(x)
     axes.plot(x, y, label=item.name or None, clip_on=item.role != "operating range", solid_capstyle="butt",
@@ -377,18 +377,11 @@ def _line(axes: Axes, item: described.Line, panel: Panel) -> list[Artist]:
     return _entry(item.role, item.name, "line")
 
 
-LONE = ("s", "^", "D", "v", "P", "X")
-"""Shapes of lines of one point, which have no dashes to be told apart by."""
-
-
-def _lone_point(axes: Axes, item: described.Line, one: Look) -> list[Artist]:
-    """A line of a single point shows nothing as a line: it is a mark, in the legend too; a bar where it bounds."""
-    kind, _, number = item.role.partition(" ")
-    bounds = kind == "limit"
-    shape = "_" if bounds else LONE[int(number) % len(LONE)] if number.isdigit() else "o"
-    style: dict[str, Any] = {"marker": shape, "mew": 2.0 if bounds else 1.0, "ls": "", "color": one.colour}
-    axes.plot(item.x, item.y, ms=14.0 if bounds else 6.0, zorder=one.layer + 1.0, **style)
-    return [Line2D([], [], label=item.name, ms=9.0 if bounds else 6.0, **style)] if item.name else []
+def _lone_point(axes: Axes, item: described.Line) -> list[Artist]:
+    """A line of one point, as a mark in the legend too."""
+    style = _marking(lone(item.role))
+    axes.plot(item.x, item.y, label=item.name or None, **style)
+    return [Line2D([], [], label=item.name, **{**style, "ms": min(style["ms"], 9.0)})] if item.name else []
 
 
 def _points(axes: Axes, item: described.Points, panel: Panel) -> list[Artist]:

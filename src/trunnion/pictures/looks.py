@@ -273,6 +273,9 @@ FAMILIES: dict[str, Callable[[int], Look]] = {
 }  # fmt: skip
 """Roles of which there are many, told apart by a number: "curve 0", "limit 1"."""
 
+LONE = ("square", "triangle", "diamond", "inverted_triangle", "plus", "cross")
+"""Shapes of curves of one point."""
+
 PALETTES: dict[str, tuple[str, ...]] = {
     # falling lightness, all darker than what is not unstable, from slow to fast growth
     "growth": ("#bf4a33", "#8c2f39", "#4a1526", "#16060d"),
@@ -303,3 +306,13 @@ def look(role: str) -> Look:
         )
     family, _, number = role.rpartition(" ")
     return FAMILIES[family](int(number)) if number.isdigit() and family in FAMILIES else LOOKS[role]
+
+
+def lone(role: str) -> Look:
+    """Of a line of that role which has one point alone, a mark: curves by shapes, having no dashes to be told apart by;
+    a bar where it bounds."""
+    one, (family, _, number) = look(role), role.rpartition(" ")
+    if family.endswith("limit"):
+        return _mark("dash", one.colour, 12.0, width=2.0)
+    shape = LONE[int(number) % len(LONE)] if number.isdigit() else "circle"
+    return _mark(shape, one.colour, 6.0)
