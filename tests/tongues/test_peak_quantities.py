@@ -243,3 +243,18 @@ def test_bounds_say_where_a_swing_may_leave_the_stage(angle: float, leaves: bool
     assert ("plate works in its stage 1 of 3, up to -130 N m, and may swing beyond it" in str(found)) == leaves
     check = next(one for one in tn.assess(plate(angle)).checks if "plate" in one.name)
     assert check.proof == "searched, not proved" or not leaves
+
+
+@pytest.mark.parametrize(("stiffness", "leaves"), [(None, False), (0.2, True)])
+def test_stages_of_teeth_end_at_other_torques_where_their_stiffness_scatters(stiffness, leaves: bool) -> None:
+    """The play ends at 50 N m, and at 40 with a fifth less stiffness; the swing of 22 N m lies between their halves."""
+    teeth = tn.GearPair(
+        base_radius_in=0.05, base_radius_out=0.1, mesh_stiffness=1e7, mesh_damping=100.0, backlash=2e-4,
+        stiffness_ratio=0.5,
+    )  # fmt: skip
+    shaken = tn.Disk(inertia=1.0, excitation=[{"order": 1, "amplitude": 21.0}])
+    shaft = tn.Shaft(stiffness=2e4, damping=2.0)
+    line = tn.Driveline([tn.ConstantSpeed(), shaft, tn.Disk(inertia=0.5), teeth, shaken])
+    tolerances = {} if stiffness is None else {"GearPair 1.mesh_stiffness": stiffness}
+    found = tn.certify_peaks(line, tolerances, speeds=(90.0, 91.0), gap=0.1)
+    assert any("may swing beyond it" in one.sentence for one in found.findings) == leaves

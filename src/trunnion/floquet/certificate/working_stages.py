@@ -104,11 +104,11 @@ def stages_held(assembly: Assembly, speeds: tuple[float, float], ranges: Sequenc
     if not staged_springs(assembly):
         return True
     low, high = torque_ranges(assembly, speeds, ranges)
-    middle = _rows(assembly, np.array([sum(speeds) / 2]), ranges)[:1]
+    middle = rows_of_ranges(assembly, np.array([sum(speeds) / 2]), ranges)[:1]
     return all(one.holds(float(low[one.spring]), float(high[one.spring])) for one in working_stages(assembly, middle))
 
 
-def _rows(assembly: Assembly, speeds: Array, ranges: Sequence[NumberRange]) -> Array:
+def rows_of_ranges(assembly: Assembly, speeds: Array, ranges: Sequence[NumberRange]) -> Array:
     """The line in the middle of all ``ranges`` at ``speeds``, then with one of them after another at both its ends."""
     middle = assembly.table(len(speeds), speeds)
     for one in ranges:
@@ -148,7 +148,7 @@ def require_stages_held(assembly: Assembly, looked_at: Array, ranges: Sequence[N
     _require_sums(assembly, looked_at, ranges)
     first, last = float(looked_at[0]), float(looked_at[-1])
     middle = (first + last) / 2
-    for one in working_stages(assembly, _rows(assembly, np.array([middle]), ranges)[:1]):
+    for one in working_stages(assembly, rows_of_ranges(assembly, np.array([middle]), ranges)[:1]):
 
         def lost_at(speed: float, one: WorkingStage = one) -> bool:
             return not one.holds(*_carried(assembly, one.spring, speed, ranges))
@@ -167,7 +167,7 @@ def require_stages_held(assembly: Assembly, looked_at: Array, ranges: Sequence[N
 
 def _carried(assembly: Assembly, spring: int, speed: float, ranges: Sequence[NumberRange]) -> tuple[float, float]:
     """Least and largest torque of a spring at one speed."""
-    low, high = _ends(assembly.static_torque(_rows(assembly, np.array([speed]), ranges))[:, None, [spring]])
+    low, high = _ends(assembly.static_torque(rows_of_ranges(assembly, np.array([speed]), ranges))[:, None, [spring]])
     return float(low[0]), float(high[0])
 
 
@@ -193,7 +193,7 @@ def _require_sums(assembly: Assembly, looked_at: Array, ranges: Sequence[NumberR
     found = _by_rows(assembly, looked_at, ranges)
     missed = np.abs(found - made).max(axis=(0, 1))
     for side in (1, 2):  # all tolerances at their low ends, and at their high ones
-        row = _rows(assembly, looked_at, ())
+        row = rows_of_ranges(assembly, looked_at, ())
         for one in ranges:
             one.columns.put(row, np.full(len(row), one.low if side == 1 else one.high))
         together = found[0] + (found[side::2] - found[:1]).sum(axis=0)
@@ -210,7 +210,7 @@ def _require_sums(assembly: Assembly, looked_at: Array, ranges: Sequence[NumberR
 
 def _by_rows(assembly: Assembly, speeds: Array, ranges: Sequence[NumberRange]) -> Array:
     """Torques (1 + 2 ranges, speed, compliance)."""
-    found = assembly.static_torque(_rows(assembly, speeds, ranges))
+    found = assembly.static_torque(rows_of_ranges(assembly, speeds, ranges))
     return found.reshape(1 + 2 * len(ranges), len(speeds), -1)
 
 
