@@ -465,7 +465,7 @@ def test_a_line_that_runs_at_one_speed_has_critical_speeds_about_it(tmp_path, st
     path.write_text(ONE_SPEED.replace("STIFFNESS", stiffness))
     page = tn.submission(tn.load(path)).html
     assert said in page and "The line runs at one speed" in page and "must be two or more" not in page
-    result = CliRunner().invoke(app, ["campbell-diagram", str(path), "--json"])
+    result = CliRunner().invoke(app, ["campbell-diagram", str(path), "--json", "-o", str(tmp_path / "modes.png")])
     assert result.exit_code == 0, result.output
     crossings = tn.campbell_diagram(tn.load(path), np.linspace(77.2, 185.3, 101)).crossings
     stated = np.sqrt(float(stiffness) * 1e3 * (1 / 0.45 + 1 / 0.25)) / 2
