@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from published.cases.forced import three_disks
 from typer.testing import CliRunner
 
 import trunnion as tn
@@ -109,6 +110,24 @@ def test_holzers_recursion_closes_at_every_frequency() -> None:
         assert len(table.nodes) == mode - 1 == np.sum(behind * ahead < 0)
         crossing = np.flatnonzero(behind * ahead < 0)
         assert [share for _, share in table.nodes] == pytest.approx(list((ahead / (ahead - behind))[crossing]))
+
+
+def test_a_published_mass_elastic_table() -> None:
+    """Thomson, Theory of Vibration with Applications (1993), table 12.4-1: its parameters as masses and springs, and of
+    both modes what the recursion of its columns gives; its own numbers are in ``published/cases/forced.py``."""
+    found = tn.natural_frequencies(three_disks(20.0))
+    assert [one.inertia for one in masses(found.assembly)] == [5.0, 11.0, 22.0]
+    assert [one.stiffness for one in springs(found.assembly)] == [0.10e6, 0.20e6]
+    for mode in (2, 3):
+        table = holzer(found, mode)
+        squared, first = table.frequency**2, table.amplitude[0]
+        torque_1 = squared * 5
+        theta_2 = 1 - torque_1 / 0.10e6
+        torque_2 = torque_1 + squared * 11 * theta_2
+        theta_3 = theta_2 - torque_2 / 0.20e6
+        assert table.amplitude / first == pytest.approx([1.0, theta_2, theta_3], rel=1e-9)
+        assert np.abs(table.torque / first) == pytest.approx(np.abs([torque_1, torque_2]), rel=1e-9)
+        assert abs(torque_2 + squared * 22 * theta_3) < 1e-9 * torque_1
 
 
 @pytest.mark.parametrize("name", ["truck", "harbour-tug", "rolling-mill-spindle"])

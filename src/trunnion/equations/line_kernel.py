@@ -56,13 +56,14 @@ PER_COMPLIANCE = 11
 GUARDS, PER_GUARD, PER_WAVE = 3, 4, 3
 IMPACT = 3 + GUARDS * PER_GUARD
 PER_STAGE = IMPACT + 2
-# Per harmonic torque A cos(order · angle + frequency · t + phase): its station and these numbers.
-AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
+# Per harmonic torque A cos(order · angle + frequency · t + phase): its station and these numbers, the phase and its
+# cosine and sine.
+AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE, ANGLE_COSINE, ANGLE_SINE = range(7)
 # Where A goes with the speed of the mean rotation, a complex number, it has PIECES (else 0) at p[CURVE]: each the speed
 # that it begins at and is counted from, and powers from 0 to 3 of A's real and of its imaginary part. The first holds
 # below where it begins too.
-CURVE, PIECES = 5, 6
-PER_HARMONIC, PER_PIECE = 7, 9
+CURVE, PIECES = 7, 8
+PER_HARMONIC, PER_PIECE = 9, 9
 # Per slider of a clutch: its compliance, the stiffness of its spring, the deflection at which it slips, and the stride
 # of its stages among the regimes. Its deflection is a state behind the rates; it follows the twist where it sticks.
 OF, SPRING, REACH, STEP = range(4)
@@ -437,23 +438,33 @@ def line(t, y_, p_, k, regime, out_):
             torque[i] -= r[s] * load
             by_angle[i] -= r1[s] * load + r[s] * growth * r1[s] * v[reference]
             by_rate[i] -= r[s] * growth * r[s]
+    # Of a torque of even orders the next harmonic is turned on from the last: an engine's take one sine, not dozens.
+    at, last, step, c, sn, c_step, s_step = -1, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0
     for h in range(int(p[HARMONICS])):
         q = harmonic + h * PER_HARMONIC
         s = int(p[q + AT])
         i = int(p[HEAD + s * PER_STATION + COORDINATE])
         if i < 0:
             continue
-        order = p[q + ORDER]
-        angle = p[HEAD + s * PER_STATION + MEAN] * theta + d[s]
-        argument = p[q + ANGLE] + p[q + FREQUENCY] * t + order * angle
+        order, angle = p[q + ORDER], p[HEAD + s * PER_STATION + MEAN] * theta + d[s]
+        if s != at or p[q + FREQUENCY] != 0.0:
+            argument = p[q + FREQUENCY] * t + order * angle
+            c, sn, step = math.cos(argument), math.sin(argument), 0.0
+        elif order != last:
+            if order - last != step:
+                step = order - last
+                c_step, s_step = math.cos(step * angle), math.sin(step * angle)
+            c, sn = c * c_step - sn * s_step, sn * c_step + c * s_step
+        at, last = s if p[q + FREQUENCY] == 0.0 else -1, order
+        turned_c = c * p[q + ANGLE_COSINE] - sn * p[q + ANGLE_SINE]
+        turned_s = sn * p[q + ANGLE_COSINE] + c * p[q + ANGLE_SINE]
         if p[q + PIECES] == 0.0:
-            push, slope = p[q + AMPLITUDE] * math.cos(argument), -p[q + AMPLITUDE] * math.sin(argument)
+            push, slope = p[q + AMPLITUDE] * turned_c, -p[q + AMPLITUDE] * turned_s
         else:
             if k:
                 return 1  # tangents would want its slope by the speed
             real, other = amplitude(p, q, turning)
-            c, sn = math.cos(argument), math.sin(argument)
-            push, slope = real * c - other * sn, -real * sn - other * c
+            push, slope = real * turned_c - other * turned_s, -real * turned_s - other * turned_c
         torque[i] += r[s] * push
         by_angle[i] += r1[s] * push + r[s] * r[s] * order * slope
     for h in range(int(p[APPLIED])):

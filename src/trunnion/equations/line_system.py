@@ -318,9 +318,9 @@ class LineSystem(Portable):
             at = np.concatenate([[course.speed], row[1:]])[None] if one.law.varies else row[None]
             torque = complex(one.size(self.assembly, at)[0])
         frequency = float(row[one.columns[2]]) if one.columns[2] >= 0 else 0.0
-        return [
-            one.station, sense * float(np.abs(torque)), sense * one.own_order, frequency, float(np.angle(torque)), 0, 0,
-        ]  # fmt: skip
+        phase = float(np.angle(torque))
+        numbers = [one.station, sense * float(np.abs(torque)), sense * one.own_order, frequency, phase]
+        return [*numbers, float(np.cos(phase)), float(np.sin(phase)), 0, 0]
 
     @cached_property
     def _stations(self) -> Array:

@@ -137,7 +137,7 @@ def _tables(made: LineSystem) -> str:
         table("static const double STAGE", core.PER_STAGE, map(row_of, stages), (), "see springs with stages below"),
         table("static const double WAVE", 3, map(row_of, waves), (), "amplitude, cycles per turn of the input, phase"),
         table("static const double RIPPLE", 3, map(row_of, ripples), (), "order, amplitude, phase of a joint"),
-        table("static const double TORQUE", 5, map(row_of, torque[:, : core.CURVE]), (),
+        table("static const double TORQUE", 5, map(row_of, torque[:, : core.ANGLE_COSINE]), (),
                "station, amplitude [N m], order, frequency [rad/s], phase"),
         "",
     ]  # fmt: skip

@@ -8,7 +8,7 @@ harmonics' amplitudes, ranks them, and the STARTS best are followed to their pea
 
 from __future__ import annotations
 
-from math import ceil, log2
+from math import ceil, log2, sqrt
 
 import numpy as np
 
@@ -84,19 +84,27 @@ def _highest(index: Integers, amplitude: Complex, f: Array) -> Array:
     chosen = _best(row, here + rise, PARABOLA * sizes.sum(axis=1))
     row, x = row[chosen], (place + shift)[chosen] * step
     a = amplitude[row]
+    first, second = -index.astype(float), -(index.astype(float) ** 2)
     moving = np.arange(len(x))
     for _ in range(NEWTON_STEPS):
-        wave = a[moving] * np.exp(1j * index * x[moving, None])
-        rate = -(index * wave.imag).sum(axis=1)
-        curve = -(index**2 * wave.real).sum(axis=1)
+        wave = a[moving] * _waves(index, x[moving])
+        rate, curve = wave.imag @ first, wave.real @ second
         # Between two tops that stand closer than samples: up to one of them first.
         move = np.divide(-rate, curve, out=np.copysign(step / 4, rate), where=curve < 0)
         x[moving] += np.clip(move, -step, step)
         moving = moving[np.abs(move) > SETTLED * step]
         if not len(moving):
             break
-    np.maximum.at(highest, row, (a * np.exp(1j * index * x[:, None])).real.sum(axis=1))
+    np.maximum.at(highest, row, (a * _waves(index, x)).real.sum(axis=1))
     return np.asarray(highest)
+
+
+def _waves(index: Integers, x: Array) -> Complex:
+    """e^{ikx} (x, k), each the product of one of the first √K and one of every √K-th."""
+    wide = ceil(sqrt(int(index.max()) + 1))
+    begun = np.exp(1j * np.arange(wide) * x[:, None])
+    leaps = np.exp(1j * wide * np.arange(int(index.max()) // wide + 1) * x[:, None])
+    return np.asarray(begun[:, index % wide] * leaps[:, index // wide])
 
 
 def _best(row: Places, value: Array, within: Array) -> Places:

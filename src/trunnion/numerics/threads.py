@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import copy_context
 from functools import cache
 from typing import TypeVar
 
 from threadpoolctl import ThreadpoolController
 
-from trunnion.waiting import keep_time
+from trunnion.waiting import keep_time, time_limit
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -38,6 +38,22 @@ def on_threads(work: Callable[[Task], Result], tasks: Iterable[Task], threads: i
         return [one.result() for one in waiting]
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def beside(work: Callable[[], Result]) -> Iterator[Callable[[], Result]]:
+    """``work`` on a thread of its own, under the same time limit, while what is inside goes on: a function that waits
+    for its result. An error or Ctrl-C inside stops it."""
+    pool = ThreadPoolExecutor(1)
+    with time_limit() as its_own:
+        waiting = pool.submit(copy_context().run, work)
+    try:
+        yield waiting.result
+    except BaseException:
+        its_own.stop()
+        raise
+    finally:
+        pool.shutdown(wait=True)
 
 
 def on_one_thread() -> AbstractContextManager[object]:

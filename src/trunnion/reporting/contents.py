@@ -20,6 +20,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import lowest_speed
 from trunnion.modes.bending import BendingSpeed, bending_speeds
 from trunnion.modes.resonance_speeds import ResonanceSpeeds, resonance_speeds
+from trunnion.numerics.threads import beside
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.overview_assessment import NEARLY
 from trunnion.reporting.ranges import diagram_range
@@ -80,27 +81,30 @@ def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
             return None
 
     turn = sweep = None
-    if hooke_joints(seen.line):
-        turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
-        sweep = unless_refused(
-            "Torque over speed",
-            lambda: sweep_of(
-                response_over(
-                    assembly,
-                    low,
-                    high,
-                    points=DRAWN[stated.costly],
-                    known=stated.response,
-                    around=stated.__dict__.get("around"),  # where the search took a rough look
-                    motions=stated.motions,
-                )
-            ),
+    speed = seen.stability.speed if seen.stability else None
+    # A motion is integrated by kernels, without the interpreter's lock.
+    with beside(lambda: loaded_motions(seen.line, speed)) as found_beside:
+        if hooke_joints(seen.line):
+            turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
+            sweep = unless_refused(
+                "Torque over speed",
+                lambda: sweep_of(
+                    response_over(
+                        assembly,
+                        low,
+                        high,
+                        points=DRAWN[stated.costly],
+                        known=stated.response,
+                        around=stated.__dict__.get("around"),  # where the search took a rough look
+                        motions=stated.motions,
+                    )
+                ),
+            )
+        campbell = unless_refused(
+            "Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(*diagram_range(low, high), 201))
         )
-    campbell = unless_refused(
-        "Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(*diagram_range(low, high), 201))
-    )
-    bending = bending_speeds(assembly)
-    loaded, without = loaded_motions(seen.line, seen.stability.speed if seen.stability else None)
+        bending = bending_speeds(assembly)
+        loaded, without = found_beside()
     helped = _helped(seen)
     if helped is not None and helped.ended:
         left_out.append(f"Remedies: {helped.ended} before all was tried; assess --remedies looks further")

@@ -6,7 +6,7 @@ ends, which analyses of drivelines have no use for, ends in an inertia of 1e12 t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,10 @@ SOURCES = {
         "Thomson, Vibration Theory and Applications (1965), p. 178, example 6.6-1",
         "case VM90 of Ansys's verification manual, with its targets; not the book",
     ),
+    "Thomson 1993": Source(
+        "Thomson, Theory of Vibration with Applications, 4th edition (1993), example 12.4-1, pp. 388-389",
+        "both pages of the book: the line of figure 12.4-2 and table 12.4-1",
+    ),
 }
 EIGHT_MASSES = {
     5.0: ("1.0237e-04", "-8.5187e-06"), 5.5: ("4.5066e-04", "-7.7914e-04"), 6.0: ("-9.4101e-05", "-1.0585e-05"),
@@ -50,6 +54,13 @@ PROPELLER_SHAFT = {
     36.14: "3.9840e6", 36.82: "3.3191e6", 38.19: "2.2979e6", 40.64: "1.4362e6", 50.04: "0.6968e6", 97.11: "0.4096e6",
 }  # fmt: skip
 """Speed [rpm]: vibratory torque [lb in]."""
+
+HOLZER = {
+    20.0: (("0.980", "0.9484"), ("2.0e3", "6.312e3", "14.66e3")),
+    40.0: (("0.920", "0.799"), ("8.0e3", "24.19e3", "52.32e3")),
+}
+"""Frequency [rad/s]: rotations of the second and the third disk [rad] where the first turns by 1 rad; torques [N m] of
+both shafts and the one on the last disk that keeps all this up."""
 
 
 def at_frequencies(make: Callable[[float], tn.Driveline], hertz: Iterable[float]) -> Any:
@@ -106,6 +117,36 @@ def two_masses(frequency: float) -> tn.Driveline:
     )
 
 
+def three_disks(frequency: float) -> tn.Driveline:
+    """J = 5, 11 and 22 kg m² with 0.1 and 0.2 MN m/rad between them; 1 N m on the third."""
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=5.0, drive_share=1.0),
+            tn.Shaft(stiffness=0.1e6),
+            tn.Disk(inertia=11.0),
+            tn.Shaft(stiffness=0.2e6),
+            tn.Disk(inertia=22.0, excitation=shaken(frequency, 1.0)),
+        ]
+    )
+
+
+def _holzer() -> Iterator[tuple[Any, Any]]:
+    """Rotations and torques at each frequency, by the one that the first disk turns by."""
+    for frequency in HOLZER:
+        result = tn.order_response(three_disks(frequency), [SPEED])
+        first = result.rotation[0, 0, 0]
+        turned = result.rotation[0, 0] / first
+        yield turned[1:].real, np.abs([*(result.torque[0, 0] / first), 1.0 / first])
+
+
+def _columns(part: int, names: tuple[str, ...]) -> dict[str, str]:
+    return {
+        f"{frequency:g} rad/s, {name}": text
+        for frequency, both in HOLZER.items()
+        for name, text in zip(names, both[part], strict=True)
+    }
+
+
 def _parts(table: dict[float, tuple[str, str]], words: tuple[str, str]) -> dict[str, str]:
     return {f"{f} Hz, {word}": text for f, pair in table.items() for word, text in zip(words, pair, strict=True)}
 
@@ -148,5 +189,14 @@ BATCHES = (
         "Thomson 1965", "two masses between three springs", "in", _parts(TWO_MASSES, ("mass 1", "mass 2")),
         lambda: at_frequencies(two_masses, TWO_MASSES)[:, :2].real.ravel(),
         relative=5e-5, precision="five figures",
+    ),
+    Batch(
+        "Thomson 1993", "table 12.4-1, rotations by that of the first disk", "rad/rad",
+        _columns(0, ("disk 2", "disk 3")), lambda: np.concatenate([turned for turned, _ in _holzer()]),
+    ),
+    Batch(
+        "Thomson 1993", "table 12.4-1, torques per radian of the first disk", "N m",
+        _columns(1, ("first shaft", "second shaft", "left on disk 3")),
+        lambda: np.concatenate([torques for _, torques in _holzer()]),
     ),
 )  # fmt: skip
