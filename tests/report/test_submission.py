@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from published.cases.forced import three_disks
+from scipy.optimize import brentq
 from typer.testing import CliRunner
 
 import trunnion as tn
@@ -19,7 +20,16 @@ from trunnion.pictures import driveline_sketch
 from trunnion.reporting.overview_assessment import capital
 from trunnion.reporting.page import in_css
 from trunnion.reporting.submission import Submission
-from trunnion.reporting.submission_tables import barred, excitations, holzer_table, misfire_checks, misfires, rules
+from trunnion.reporting.submission_tables import (
+    barred,
+    excitations,
+    holzer_table,
+    misfire_checks,
+    misfires,
+    particulars,
+    rules,
+    shafts,
+)
 
 TEXT = """
 format = 1
@@ -476,7 +486,7 @@ rated_speed = "1460 rpm"
 
 @pytest.mark.parametrize(
     ("stiffness", "said"),
-    [("30", "No excitation meets a mode from 77.2036 rad/s to 185.289 rad/s"), ("18", "Critical speeds from")],
+    [("30", "No excitation meets a mode from 77.2 rad/s to 185.3 rad/s"), ("18", "Critical speeds from")],
 )
 def test_a_line_that_runs_at_one_speed_has_critical_speeds_about_it(tmp_path, stiffness: str, said: str) -> None:
     """Order 2 of the second meets its mode, which the reduced inertia gives by hand, a tenth above the speed."""
@@ -489,3 +499,27 @@ def test_a_line_that_runs_at_one_speed_has_critical_speeds_about_it(tmp_path, st
     crossings = tn.campbell_diagram(tn.load(path), np.linspace(77.2, 185.3, 101)).crossings
     stated = np.sqrt(float(stiffness) * 1e3 * (1 / 0.45 + 1 / 0.25)) / 2
     assert [one.speed == pytest.approx(stated, rel=0.02) for one in crossings] == [True] * int(stated < 185.3)
+
+
+def test_load_cases_of_a_line_that_runs_at_one_speed_have_speeds_of_their_own() -> None:
+    """Where the motor's curve meets the pump's square, by a root of the test's own; the torque that swings most and the
+    largest one are of two cases, and each is named."""
+    cases = "".join(
+        f'[[operation.load_case]]\nname = "{name}"\nfactors = {{ "pump" = {share} }}\n'
+        for name, share in (("in parallel", 1.15), ("closed valve", 0.4))
+    )
+    made = tn.submission(tn.loads(ONE_SPEED.replace("STIFFNESS", "30") + cases))
+    contents, synchronous, rated = made.contents, tn.rpm(1500), tn.rpm(1460)
+
+    def left(speed: float, share: float) -> float:
+        slip = (synchronous - speed) / synchronous
+        return 720 * 2 * slip * 0.12 / (slip**2 + 0.12**2) - share * 30e3 / rated * (speed / rated) ** 2
+
+    own = [brentq(left, 0.95 * synchronous, 0.9999 * synchronous, args=(share,)) for share in (1.0, 1.15, 0.4)]
+    assert [one.speed for one in contents.powers] == pytest.approx(own, rel=1e-6)
+    stated, slow, fast = (one / tn.rpm(1) for one in own)
+    said = dict(particulars(contents).rows)["running range"]
+    assert said == f"{stated:.6g} rpm, load cases {slow:.4g} rpm to {fast:.4g} rpm"
+    (coupling,) = shafts(contents).rows
+    assert coupling[-1] == "closed valve; peak: in parallel"
+    assert "judged from" not in made.html and "at one speed" in made.html

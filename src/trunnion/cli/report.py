@@ -31,8 +31,8 @@ MOST_ROWS = 24
 
 def print_begin(given: AssessableLine) -> None:
     """What is about to be judged: the verdict of a long line takes some seconds."""
-    span = Words(given.unit).ends(*given.speed_range)
-    said = [counted(len(given.line.elements), "element"), f"judged from {span}"]
+    span = Words(given.unit).over(*given.speed_range)
+    said = [counted(len(given.line.elements), "element"), f"judged {span}"]
     if given.line.operation and (cases := given.line.operation.load_cases):
         said.append(f"as it is and under {counted(len(cases), 'load case')}")
     output.say(f"{given.line.name or 'driveline'}: {', '.join(said)}", wrap=True)
@@ -44,7 +44,7 @@ def print_judged(given: AssessedLine) -> None:
 
     judged = given.assessment
     output.say(f"{given.line.name or 'driveline'}: {judged.sentence}", style="bold")
-    output.heading(f"Checks from {Words(given.unit).ends(*given.speed_range)}")
+    output.heading(f"Checks {Words(given.unit).over(*given.speed_range)}")
     rows = [r for r, c in zip(judged.table(), judged.checks, strict=True) if c.status is not Status.NOT_APPLICABLE]
     output.table([{k: v for k, v in row.items() if k != "because"} for row in rows])
     for one in judged.switched_off:
@@ -64,7 +64,7 @@ def print_overview(seen: Overview, given: OverviewAssessment) -> None:
     output.say(str(seen.line))
     modes = seen.natural_frequencies.table(seen.natural_frequencies.words.of_frequencies.of_speeds)
     output.table(modes, "Natural frequencies, all joints straight")
-    span = f"from {words.ends(*seen.speed_range)}"
+    span = words.over(*seen.speed_range)
     able = [row for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True) if r.opens]
     output.heading(f"Resonance speeds {span} at which instability can begin: {len(able) or 'none'}")
     output.table([{k: v for k, v in row.items() if k != "instability can begin"} for row in able[:MOST_ROWS]])

@@ -92,7 +92,7 @@ class Envelope(Result):
         yield Variable("worst_place", [self.places[k].label for k in self.where], "check")
 
     def _lines(self) -> Iterator[str]:
-        yield f"envelope from {self.words.ends(self.low, self.high)}: {self.sentence}"
+        yield f"envelope {self.words.over(self.low, self.high)}: {self.sentence}"
         for check, k in zip(self.checks, self.where, strict=True):
             where = f" {self.places[k].label}" if check.judged and len(self.places) > 1 else ""
             yield f"  {check.word}: {check.name}{where}: {check.because}"

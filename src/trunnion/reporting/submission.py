@@ -32,6 +32,7 @@ from trunnion.reporting.submission_contents import SubmissionContents, gather
 from trunnion.reporting.tables import Table
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import frequency_unit
+from trunnion.results.units import range_words
 from trunnion.results.words import HERTZ, Words
 from trunnion.waiting import to_the_end
 
@@ -152,7 +153,7 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "met": contents.campbell is not None,
         "range": Words(seen.unit).ends(*seen.speed_range),
         "one_speed": seen.speed_range[0] == seen.speed_range[1],
-        "drawn": Words(seen.unit).ends(*diagram_range(*seen.speed_range)),
+        "drawn": _drawn(seen),
         "curves": [key for key in shown if key.startswith("torque of ")],
         "pictures": shown,
         "program": f"Trunnion {__version__}, NumPy {np.__version__}",
@@ -168,6 +169,14 @@ def _footer(line: Driveline) -> str:
     of = line.document
     revision = f"revision {of.revision}" if of and of.revision else ""
     return ", ".join(one for one in (of.number if of else "", revision, line.name or "Driveline") if one)
+
+
+def _drawn(seen: OverviewAssessment) -> str:
+    """The speeds of the Campbell diagram: as stated, or with four figures those about one speed."""
+    words, (low, high) = Words(seen.unit), diagram_range(*seen.speed_range)
+    if (low, high) == seen.speed_range:
+        return words.ends(low, high)
+    return range_words(words.rounded(low), words.rounded(high))
 
 
 def _height_across(drawn: ReportPicture) -> float:

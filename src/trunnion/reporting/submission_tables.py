@@ -28,10 +28,11 @@ from trunnion.driveline.title_block import TitleBlock
 from trunnion.equations.harmonics import disk_torques
 from trunnion.errors import InputError
 from trunnion.modes.mass_elastic import HolzerTable, SpringRow, masses, springs
-from trunnion.reporting.submission_contents import SubmissionContents
+from trunnion.reporting.submission_contents import ShaftTorque, SubmissionContents
 from trunnion.reporting.tables import Table, four
 from trunnion.results.counts import counted, listed
 from trunnion.results.speeds import order_name
+from trunnion.results.units import range_words
 from trunnion.results.words import HERTZ, Words
 
 EMPTY = "–"
@@ -84,7 +85,7 @@ def particulars(contents: SubmissionContents) -> Table:
     seen = contents.seen
     words = Words(seen.unit)
     low, high = seen.speed_range
-    rows = [("running range", words.ends(low, high))]
+    rows = [("running range", words.ends(low, high) + _own_speeds(contents))]
     if seen.speed:
         rows.append(("operating speed", words.speed(seen.speed)))
     if contents.powers:
@@ -105,6 +106,15 @@ def particulars(contents: SubmissionContents) -> Table:
     if contents.left_out:
         rows.append(("left out", "not all computed, see section 10"))
     return Table(("", ""), tuple(rows))
+
+
+def _own_speeds(contents: SubmissionContents) -> str:
+    """Between which speeds the load cases of a line run that runs at one speed in each."""
+    (low, high), words = contents.seen.speed_range, Words(contents.seen.unit)
+    speeds = [one.speed for one in contents.powers if one.case]
+    if low != high or not speeds:
+        return ""
+    return f", load cases {range_words(words.rounded(min(speeds)), words.rounded(max(speeds)))}"
 
 
 def _malfunction(contents: SubmissionContents) -> str:
@@ -421,10 +431,16 @@ def shafts(contents: SubmissionContents) -> Table:
             f"peak [{prefix}N m]": one.peak.value / size,
             f"peak at [{words.unit}]": one.peak.speed * words.factor,
             f"limit of peak [{prefix}N m]": _limit(contents, one.spring, PEAK, "maximum_torque", size),
-            **({"load case": one.peak.case or "as described"} if several else {}),
+            **({"load case": _cases(one)} if several else {}),
         }
         for one in contents.shafts
     )
+
+
+def _cases(one: ShaftTorque) -> str:
+    """The load case of a spring's largest torques, or of each where they are of two."""
+    vibratory, peak = (found.case or "as described" for found in (one.vibratory, one.peak))
+    return peak if vibratory == peak else f"{vibratory}; peak: {peak}"
 
 
 def _limit(contents: SubmissionContents, spring: str, key: str, rating: str, size: float) -> str:

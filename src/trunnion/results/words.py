@@ -50,6 +50,10 @@ class Words:
         """ "300 rpm to 2400 rpm"."""
         return range_words(self.speed(low), self.speed(high))
 
+    def over(self, low: float, high: float) -> str:
+        """ "from 300 rpm to 2400 rpm", "at 1475 rpm" of a line that runs at one speed."""
+        return f"at {self.speed(low)}" if low == high else f"from {self.ends(low, high)}"
+
     def barred(self, ranges: Sequence[tuple[float, float]], most: int = 4) -> str:
         """ "62.08 rpm to 73.08 rpm": so many figures, rounded outward, of ranges that are kept clear of."""
         return " and ".join(range_words(*(self.speed(end) for end in self._outward(one, most))) for one in ranges)

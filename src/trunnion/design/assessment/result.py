@@ -151,7 +151,7 @@ class Assessment(Result):
         ]
 
     def _lines(self) -> Iterator[str]:
-        yield f"assessment from {self.words.ends(self.low, self.high)}: {self.sentence}"
+        yield f"assessment {self.words.over(self.low, self.high)}: {self.sentence}"
         for c in self.checks:
             yield f"  {c.words}: {c.name}: {c.because}"
             if c.judged:
