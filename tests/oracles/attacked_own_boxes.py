@@ -22,11 +22,17 @@ STEPS = 7
 """In which the damping at the boundary is found."""
 
 
+def shares(wave: Wave, p: np.ndarray) -> np.ndarray:
+    """By which the rows of a wave count: products of Chebyshev polynomials of the parameters."""
+    if wave.terms is None:
+        return np.concatenate([[1.0], p])[: len(wave.parts)]
+    return np.cos(np.array(wave.terms.exponents) * np.arccos(p)).prod(axis=1)
+
+
 def value(wave: Wave, phi: float, p: np.ndarray) -> float:
-    """Of a wave; rows of the first parameter's Chebyshev polynomials stand last."""
+    """Of a wave."""
     order = np.arange(-wave.last, wave.last + 1)
-    powers = np.cos(np.arange(2, 2 + wave.powers) * np.arccos(p[0]))
-    return float((np.concatenate([[1.0], p, powers]) @ wave.parts @ np.exp(2j * order * phi)).real)
+    return float((shares(wave, p) @ wave.parts @ np.exp(2j * order * phi)).real)
 
 
 def counted(own: MotionEquations, pair: BentPair, p: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -9,16 +10,17 @@ import numpy as np
 import pytest
 from oracles.attacked_own_boxes import attack_own, counted, value
 from oracles.bent_pair import PERIOD, BentPair
+from oracles.swung_trees import SwungTree
 
 import trunnion as tn
 from trunnion.floquet.certificate import own_judge, proof
-from trunnion.floquet.certificate.box_coefficients import NumberRange
+from trunnion.floquet.certificate.box_coefficients import NumberRange, box_coefficients
 from trunnion.floquet.certificate.box_space import BoxSpace
 from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves
 from trunnion.floquet.certificate.own_judge import OwnMotionLine, judged_motion
 from trunnion.floquet.certificate.own_stages import OwnStage
 from trunnion.floquet.certificate.periodic_lyapunov import lyapunov_series, modal_box
-from trunnion.floquet.certificate.waves import Wave
+from trunnion.floquet.certificate.waves import Terms, Wave, terms_of
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
 from trunnion.results.verdict import Verdict
 
@@ -104,32 +106,83 @@ def test_the_tube_holds_the_motion_which_decays_as_proved(shares: Tolerances, wi
     assert 1 / slowness[0] < speeds[0] and 1 / slowness[-1] > speeds[1]
 
 
-def test_powers_of_the_first_parameter_are_followed() -> None:
-    """Products, inverses and exponentials at parameters and angles anywhere; without powers far more is left out."""
-    rng, left = np.random.default_rng(7), {}
-    for powers in (0, 2):
-        parts = np.zeros((2, 3 + powers, 25), dtype=complex)
-        parts[:, 0, 12] = 2.0, 0.3
-        some = rng.normal(size=(2, 2, 2)) * 0.05
-        for k in (1, 2):  # a parameter that has powers, and one that has none
-            parts[:, k, 12], parts[:, k, 11], parts[:, k, 13] = 0.1 * k, some[:, k - 1, 0], some[:, k - 1, 0]
-        parts[:, 2] *= 1e-3
-        f, g = (Wave(one, 0.0, powers) for one in parts)
-        made = {"product": f * g, "inverse": f.inverse(), "exponential": (f * g).exp()}
-        for _ in range(200):
-            phi, p = rng.uniform(0, 6), np.append(rng.choice([-1, 1, *rng.uniform(-1, 1, 2)]), rng.uniform(-1, 1))
-            a, b = value(f, phi, p), value(g, phi, p)
-            for name, true in {"product": a * b, "inverse": 1 / a, "exponential": np.exp(a * b)}.items():
-                assert abs(value(made[name], phi, p) - true) <= made[name].rest * (1 + 1e-9)
-        left[powers] = {name: one.rest for name, one in made.items()}
-    assert all(left[2][name] < 0.1 * left[0][name] for name in left[0])
+def some_waves(terms: Terms, rng: np.random.Generator, size: float) -> list[Wave]:
+    """Two real ones of some harmonics in every row, about 2 and 0.3, each row smaller by ``size`` for each degree."""
+    found = []
+    for mean in (2.0, 0.3):
+        parts = np.zeros((len(terms), 25), dtype=complex)
+        for row, one in zip(parts, terms.exponents, strict=True):
+            some = rng.normal(size=3) * size ** sum(one)
+            row[10:15] = [some[2], some[0] * 1j, some[1], some[0] * -1j, some[2]]
+        parts[0, 12] += mean * 5
+        found.append(Wave(parts / 5, 0.0, terms))
+    return found
+
+
+@pytest.mark.parametrize("parameters", [1, 2, 4])
+@pytest.mark.parametrize("degrees", [(1, 0), (1, 3), (2, 0), (2, 3), (3, 3), (4, 0)])
+def test_products_of_parameters_are_followed(parameters: int, degrees: tuple[int, int]) -> None:
+    """Products, inverses, exponentials and cuts at parameters and angles anywhere; the higher the degree the less is
+    left out, by an order each."""
+    rng, terms = np.random.default_rng(7), terms_of(parameters, *degrees)
+    f, g = some_waves(terms, rng, 0.03)
+    lower = terms_of(parameters, 1, degrees[1])
+    made = {
+        "product": f * g, "inverse": f.inverse(), "exponential": (f * g).exp(), "cut": f.cut(lower),
+        "quotient": (f * g + 1.0 - g) * f.inverse(),
+    }  # fmt: skip
+    nearest = dict.fromkeys(made, 0.0)
+    for _ in range(400):
+        phi, p = rng.uniform(0, 6), rng.choice([-1, 1, *rng.uniform(-1, 1, 2)], parameters)
+        a, b = value(f, phi, p), value(g, phi, p)
+        expected = {"product": a * b, "inverse": 1 / a, "exponential": np.exp(a * b), "cut": a,
+                    "quotient": (a * b + 1 - b) / a}  # fmt: skip
+        for name, true in expected.items():
+            off = abs(value(made[name], phi, p) - true)
+            assert off <= made[name].rest * (1 + 1e-9) + 1e-14
+            nearest[name] = max(nearest[name], off / max(made[name].rest, 1e-13))
+    assert nearest["product"] > 0.01 and nearest["exponential"] > 0.01
+    below = {name: one.rest for name, one in made.items()}
+    smaller = [Wave(one.parts * (0.1 ** np.array(terms.exponents).sum(axis=1))[:, None], 0.0, terms) for one in (f, g)]
+    order = degrees[0] + 1 if parameters > 1 else max(degrees) + 1
+    tight = {"product": smaller[0] * smaller[1], "inverse": smaller[0].inverse()}
+    for name, one in tight.items():
+        assert one.rest < below[name] * 0.1 ** (order - 0.5) + 1e-10  # harmonics beyond the last
+
+
+def test_a_product_of_chebyshev_polynomials_is_exact() -> None:
+    """T₂(p₁)T₁(p₂) · T₁(p₁)T₁(p₂), where all of it is kept."""
+    terms = terms_of(2, 5)
+    one, two = (np.zeros((len(terms), 3), dtype=complex) for _ in range(2))
+    one[terms.row[2, 1], 1], two[terms.row[1, 1], 1] = 3.0, 1.0
+    made = Wave(one, 0.0, terms) * Wave(two, 0.0, terms)
+    expected = {(3, 2): 0.75, (1, 2): 0.75, (3, 0): 0.75, (1, 0): 0.75}
+    assert {terms.exponents[k]: made.parts[k, 1] for k in np.flatnonzero(made.parts[:, 1])} == expected
+    assert made.rest < 1e-12
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_the_angle_of_a_joint_that_scatters_is_enclosed(degree: int) -> None:
+    """tan²(β/2) at angles from one end to the other, also through zero."""
+    own = OwnMotionLine(PAIR.line)
+    for ends in ((0.2, 0.3), (-0.05, 0.1), (0.5, 0.9)):
+        spread = ranges_of(own, {"joint.angle": ("range", *ends)})
+        one = replace(spread[0], columns=own.assembly.packed.resolve(spread[0].label))
+        terms = terms_of(2, degree)
+        (wave,) = box_coefficients(own.assembly, (95.0, 95.0), [one], 2, terms).tangents.values()
+        off = [
+            abs(value(wave, 0.0, np.array([0.3, p])) - np.tan((sum(ends) + p * (ends[1] - ends[0])) / 4) ** 2)
+            for p in np.linspace(-1, 1, 41)
+        ]
+        assert 0.1 * wave.rest < max(off) <= wave.rest
+        assert wave.rest < 0.3 * ((ends[1] - ends[0]) / 2) ** min(degree + 1, 3) * (1 if degree > 1 else 2)
 
 
 @pytest.mark.parametrize(("shares", "width"), [({}, 0.02), (SHARES, 2e-3)])
 def test_the_bound_holds_of_all_angles_and_parameters(shares: Tolerances, width: float) -> None:
     """x*Nx ≤ |x|ᵀC|x| in modal coordinates, N = P′ + A*P + PA by the series at single angles and parameters."""
     own, motion, ranges, _ = box(shares, width)
-    matrix = own_judge._matrix(own, own.rates(motion))
+    matrix = own_judge._matrix(own.cut(terms_of(1 + len(ranges), 1, 3)), motion)
     modal = modal_box(matrix)
     assert modal is not None
     found = lyapunov_series(matrix, modal)
@@ -172,7 +225,7 @@ def test_a_tube_about_a_wrong_motion_holds_the_right_one_or_is_refused(off: floa
     own, motion, _, speeds = box({}, 1e-3)
     parts = motion.twist[0].parts.copy()
     parts[0, [own.last - 1, own.last + 1]] += off / 2
-    wrong = MotionWaves((Wave(parts, 0.0),), motion.speed, motion.drive)
+    wrong = replace(motion, twist=(replace(motion.twist[0], parts=parts),))
     found = judged_motion(own, wrong, speeds)
     assert found is not None and found.verdict.proved == (off < 1e-6)
     if found.tube is not None:
@@ -407,3 +460,29 @@ def test_the_whole_range_of_the_tug_is_proved() -> None:
     found = tn.certify_stability(TUG, {})
     assert found.verdict == "proved stable" and found.undecided_share == 0
     assert "about the line's own periodic motion, proved to exist" in str(found)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "width"), [((60.0, 60.6), 0.05), ((100.0, 100.4), 0.0125)], ids=["slow", "near a resonance"]
+)
+def test_three_tolerances_of_the_tug_hold_at_corners_and_inside(speeds: tuple[float, float], width: float) -> None:
+    """By an integration of the equations of the whole line that the tests have."""
+    names = "elastic coupling.stiffness", "joint 1.angle", "propeller.inertia"
+    found, rng = tn.certify_stability(TUG, dict.fromkeys(names, width), speeds), np.random.default_rng(9)
+    assert found.verdict == "proved stable" and found.boxes < 10
+    spreads = read_tolerances(OwnMotionLine(TUG).assembly, dict.fromkeys(names, width))
+    nearest = np.inf
+    for k in range(16):
+        p = np.array([[k >> 2 & 1, k >> 1 & 1, k & 1]]) * 2.0 - 1 if k < 8 else rng.uniform(-1, 1, (1, 3))
+        middle = {s.label: ((s.low + s.high) / 2, (s.high - s.low) / 2) for s in spreads}
+        values = {name: mean + half * float(at) for (name, (mean, half)), at in zip(middle.items(), p[0], strict=True)}
+        line, speed = TUG, speeds[k % 2] if k < 8 else float(rng.uniform(*speeds))
+        for label, number in values.items():
+            element, key = label.split(".")
+            line = line.replace(element, **{key: number})
+        own = SwungTree(line, turn=3 * np.pi).motion(speed)
+        assert own is not None
+        rate = -np.log(own.radius) * speed / (3 * np.pi)
+        assert rate >= found.decay * (1 - 1e-6)
+        nearest = min(nearest, rate / found.decay)
+    assert nearest < 1.5

@@ -8,7 +8,7 @@ by its inverse, so that the equations are linear in it: then so are all that its
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
@@ -22,7 +22,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.loads import given_shares
 from trunnion.equations.stage_laws import has_stages
-from trunnion.floquet.certificate.waves import OUTWARD, Wave, affine
+from trunnion.floquet.certificate.waves import OUTWARD, Terms, Wave, affine
 
 STATED = 1e-13
 """What numbers of a line may be wrong by, relative: how they follow from a description is not enclosed."""
@@ -63,16 +63,16 @@ class BoxCoefficients:
     over_mass: dict[int, Wave]
     middle: LineCoefficients
 
-    def along(self, parameter: int) -> BoxCoefficients:
-        """As one parameter alone moves them, without their rests."""
+    def each(self, made: Callable[[Wave], Wave]) -> BoxCoefficients:
+        """With what is made of every wave."""
         found: dict[str, Any] = {}
         for name, value in vars(self).items():
             if isinstance(value, Wave):
-                found[name] = value.along(parameter)
+                found[name] = made(value)
             elif isinstance(value, list):
-                found[name] = [one.along(parameter) for one in value]
+                found[name] = [made(one) for one in value]
             elif isinstance(value, dict):
-                found[name] = {key: one.along(parameter) for key, one in value.items()}
+                found[name] = {key: made(one) for key, one in value.items()}
         return replace(self, **found)
 
 
@@ -81,15 +81,15 @@ def box_coefficients(
     speeds: tuple[float, float],
     ranges: Sequence[NumberRange],
     last: int,
-    powers: int = 0,
+    terms: Terms | None = None,
     near: Wave | None = None,
 ) -> BoxCoefficients:
     """Of the box from ``speeds[0]`` to ``speeds[1]`` and over all ``ranges``, as waves of ``last`` harmonics and
-    ``powers`` of the first parameter beyond it.
+    ``terms``, where products of parameters are followed.
 
     ``near`` : nearly the speed, in place of it, for torques that are no more than what others are counted from.
     """
-    topo, many = assembly.topology, 1 + len(ranges) + powers
+    topo, many = assembly.topology, 1 + len(ranges) if terms is None else len(terms) - 1
     table = assembly.table(1 + 2 * len(ranges), sum(speeds) / 2)
     for k, one in enumerate(ranges):
         values = np.full(len(table), (one.low + one.high) / 2)
@@ -105,23 +105,23 @@ def box_coefficients(
             slopes = {2 + j: (column[2 + 2 * j] - column[1 + 2 * j]) / 2 for j in range(len(ranges))}
             kept = {v: float(slope) for v, slope in slopes.items() if slope}
             rest = STATED * float(np.abs(column).max()) + (0.0 if products is None else float(products[k]))
-            found.append(affine(float(column[0]), kept, many, last, rest))
+            found.append(affine(float(column[0]), kept, many, last, rest, terms))
         return found
 
     half = (speeds[1] - speeds[0]) / 2
     # Exactly what it says: the ends are moved outward by more than rounding makes of the middle.
-    speed = replace(affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last), powers=powers)
+    speed = affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last, terms=terms)
     stiffness, damping = waves(co.stiffness), waves(co.damping, extra)
     constant, viscous, quadratic = waves(co.load), waves(co.viscous), waves(co.quadratic)
     torque = _torques(assembly, near or speed, constant, viscous, quadratic, table[:1])
     if near:
-        torque = [Wave(one.parts, 0.0, one.powers) for one in torque]
+        torque = [Wave(one.parts, 0.0, one.terms) for one in torque]
     shift, untwisted_shift = waves(co.shift), waves(co.shift)
     middle = assembly.coefficients(table[:1])
     for e in range(len(topo.compliances)):
         _put_twists(assembly, middle, e, stiffness[e], torque[e], shift)
-    inertia, over_mass = waves(co.inertia), _inverses(assembly, co, ranges, many, last)
-    tangents = {s: _tangent(assembly, s, ranges, many, last) for s in topo.joints}
+    inertia, over_mass = waves(co.inertia), _inverses(assembly, co, ranges, many, last, terms)
+    tangents = {s: _tangent(assembly, s, ranges, many, last, terms) for s in topo.joints}
     kept_tangents = {s: wave for s, wave in tangents.items() if wave is not None}
     return BoxCoefficients(
         speed=speed, stiffness=stiffness, damping=damping, torque=torque, inertia=inertia, constant=constant,
@@ -195,18 +195,23 @@ def _put_twists(
         else:
             own = float(shaft_stiffness(assembly, assembly.table(1, float(middle.speed[0])), i, number)[0])
             twisted = torque * (1 / own)
-            shift[behind] = shift[behind] + Wave(twisted.parts, twisted.rest + STATED * twisted.size, twisted.powers)
+            shift[behind] = shift[behind] + Wave(twisted.parts, twisted.rest + STATED * twisted.size, twisted.terms)
 
 
 def twist_in_stage(middle: LineCoefficients, e: int, stiffness: Wave, torque: Wave) -> Wave:
     """Twist [rad] of a spring with stages under ``torque`` in the stage of the ``middle``."""
     twist, carried = float(middle.twist[0, e]), float(middle.torque[0, e])
     found = (torque - carried) * stiffness.inverse() + twist
-    return Wave(found.parts, found.rest + STATED * abs(twist), found.powers)
+    return Wave(found.parts, found.rest + STATED * abs(twist), found.terms)
 
 
 def _inverses(
-    assembly: Assembly, co: LineCoefficients, ranges: Sequence[NumberRange], many: int, last: int
+    assembly: Assembly,
+    co: LineCoefficients,
+    ranges: Sequence[NumberRange],
+    many: int,
+    last: int,
+    terms: Terms | None,
 ) -> dict[int, Wave]:
     """1/M of the unknowns that turn all their inertia evenly, where one tolerance moves them, and nothing else but
     such inertias in the same proportion: the numbers between its ends then follow one parameter."""
@@ -231,12 +236,16 @@ def _inverses(
         for s in moved:
             ends = 1 / co.inertia[low, s], 1 / co.inertia[high, s]
             middle, half = (ends[0] + ends[1]) / 2, (ends[1] - ends[0]) / 2
-            found[even[s]] = affine(float(middle), {2 + j: float(half)}, many, last, STATED * float(max(ends)))
+            rest = STATED * float(max(ends))
+            found[even[s]] = affine(float(middle), {2 + j: float(half)}, many, last, rest, terms)
     return found
 
 
-def _tangent(assembly: Assembly, s: int, ranges: Sequence[NumberRange], many: int, last: int) -> Wave | None:
-    """t = tan²(β/2) of a Hooke's joint whose angle β scatters, to second order; None of any other."""
+def _tangent(
+    assembly: Assembly, s: int, ranges: Sequence[NumberRange], many: int, last: int, terms: Terms | None
+) -> Wave | None:
+    """t = tan²(β/2) of a Hooke's joint whose angle β scatters, to second order, or to third where ``terms`` has the
+    square of its tolerance; None of any other."""
     place = assembly.topology.stations[s].element
     for j, one in enumerate(ranges):
         labels = [list(assembly.packed.place)[column] for column in one.columns.index.tolist()]
@@ -244,15 +253,18 @@ def _tangent(assembly: Assembly, s: int, ranges: Sequence[NumberRange], many: in
             continue
         k = labels.index((place, ANGLE))
         ends = [float(one.columns.offset[k] + one.columns.slope[k] * v) for v in (one.low, one.high)]
-        beta, half = sum(ends) / 2, (ends[1] - ends[0]) / 2
-        h, most = beta / 2, max(abs(end) for end in ends) / 2
-        over = 1 / np.cos(most) ** 2
-        second = 0.5 * over * (over + 2 * np.tan(most) ** 2) * half**2 / 2
-        slope = np.tan(h) / np.cos(h) ** 2 * half
-        value = np.tan(h) ** 2
-        return affine(
-            float(value), {2 + j: float(slope)}, many, last, float(second * OUTWARD + STATED * (value + 1e-3))
-        )
+        h, half = sum(ends) / 4, (ends[1] - ends[0]) / 4  # of β/2
+        value, most = np.tan(h) ** 2, np.tan(max(abs(end) for end in ends) / 2) ** 2
+        slopes = {2 + j: float(2 * np.tan(h) * (1 + value) * half)}
+        square = None if terms is None else terms.power(2 + j, 2)
+        if square is None:
+            left = (1 + most) * (1 + 3 * most) * half**2
+        else:  # p² = (1 + T₂(p))/2
+            second = float((1 + value) * (1 + 3 * value) * half**2)
+            value, slopes[square] = value + second / 2, second / 2
+            left = 4 / 3 * np.sqrt(most) * (2 + 3 * most) * (1 + most) * abs(half) ** 3
+        rest = float(left * OUTWARD + STATED * (value + 1e-3))
+        return affine(float(value), slopes, many, last, rest, terms)
     return None
 
 

@@ -208,7 +208,7 @@ class BoxLine:
             for m, amplitude, phase in zip(law.orders, law.amplitude, law.phase, strict=True):
                 a, at = float(np.ravel(amplitude)[0]), float(np.ravel(phase)[0])
                 z = circle(m) * complex(np.exp(1j * at))
-                z = Wave(z.parts, z.rest + 1e-13 * z.size, z.powers)
+                z = Wave(z.parts, z.rest + 1e-13 * z.size, z.terms)
                 sine, cosine = (z - z.conjugate()) * (-0.5j * a), (z + z.conjugate()) * (0.5 * a)
                 forward, eta = forward + sine, eta + cosine * m
                 slope, curvature = slope - sine * m**2, curvature - cosine * m**3
@@ -284,7 +284,7 @@ class BoxLine:
                 if entry.size:
                     entries[springs + i, springs + j] = entry
         # Ratios are exact fractions, of which E and ρ are the nearest numbers.
-        entries = {place: Wave(one.parts, one.rest + ROUNDED * one.size, one.powers) for place, one in entries.items()}
+        entries = {place: Wave(one.parts, one.rest + ROUNDED * one.size, one.terms) for place, one in entries.items()}
         return BoxEntries(entries, energy, light, aside)
 
     def _made(self, found: BoxEntries) -> BoxMatrix:
@@ -355,7 +355,7 @@ class BoxLine:
                 at = complex(one.complex_amplitude[0]) / 2
                 up = affine(1.0, {}, self.parameters, self.last).shifted(round(float(one.order) / rate)) * at
                 wave = wave + up + up.conjugate()
-            found[mesh.compliance] = Wave(wave.parts, wave.rest + 1e-13 * wave.size, wave.powers)
+            found[mesh.compliance] = Wave(wave.parts, wave.rest + 1e-13 * wave.size, wave.terms)
         return found
 
 

@@ -16,7 +16,7 @@ of the shift. A line at a prescribed speed has w₀ = Ω and all 2n states.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -27,7 +27,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.certificate.box_coefficients import BoxCoefficients, twist_in_stage
 from trunnion.floquet.certificate.box_equations import BoxLine, Walk, period_rate, speed_modulus
 from trunnion.floquet.certificate.own_stages import OwnStage
-from trunnion.floquet.certificate.waves import Wave
+from trunnion.floquet.certificate.waves import Terms, Wave, terms_of
 
 Entries = dict[tuple[int, int], Wave]
 """A matrix of waves; what is missing is zero."""
@@ -49,14 +49,18 @@ class MotionWaves:
 
     def widened(self, radii: Array) -> MotionWaves:
         """All motions near it: each state within its radius."""
-        states = [Wave(one.parts, one.rest + float(r), one.powers) for one, r in zip(self.states, radii, strict=True)]
+        states = [Wave(one.parts, one.rest + float(r), one.terms) for one, r in zip(self.states, radii, strict=True)]
         many = len(self.twist)
         return MotionWaves(tuple(states[:many]), tuple(states[many:]), self.drive)
 
-    def along(self, parameter: int) -> MotionWaves:
-        """As one parameter alone moves it."""
-        twist, speed = (tuple(one.along(parameter) for one in states) for states in (self.twist, self.speed))
-        return MotionWaves(twist, speed, self.drive.along(parameter))
+    def cut(self, terms: Terms) -> MotionWaves:
+        """With those alone; what others bring goes to the rests."""
+        return self.each(lambda one: one.cut(terms))
+
+    def each(self, made: Callable[[Wave], Wave]) -> MotionWaves:
+        """With what is made of every wave."""
+        twist, speed = (tuple(made(one) for one in states) for states in (self.twist, self.speed))
+        return MotionWaves(twist, speed, made(self.drive))
 
 
 @dataclass(frozen=True)
@@ -70,17 +74,40 @@ class Rates:
 
 @dataclass(frozen=True)
 class MotionEquations:
-    """Of one box. ``drive`` (station,): torque [N m] in the mean sense there of one at the input that drives;
-    ``stages`` of springs that have some; ``powers`` of the first parameter beyond it among the ``parameters``, see
-    ``waves``."""
+    """Of one box. ``ladder`` : products of parameters that are followed, see ``waves``: to first order, to second, up
+    to all; ``drive`` (station,): torque [N m] in the mean sense there of one at the input that drives; ``stages`` of
+    springs that have some."""
 
     assembly: Assembly
     co: BoxCoefficients
-    parameters: int
+    ladder: tuple[Terms, ...]
     last: int
     drive: Array
     stages: tuple[OwnStage, ...] = ()
-    powers: int = 0
+
+    @property
+    def terms(self) -> Terms:
+        """All that are followed."""
+        return self.ladder[-1]
+
+    @property
+    def rows(self) -> int:
+        """Of every wave."""
+        return len(self.terms)
+
+    @property
+    def parameters(self) -> int:
+        """The torque or the speed, and tolerances."""
+        return len(self.terms.exponents[0])
+
+    def cut(self, terms: Terms) -> MotionEquations:
+        """With those alone; what others bring goes to the rests."""
+        return replace(self, co=self.co.each(lambda one: one.cut(terms)), ladder=(terms,))
+
+    @property
+    def middle(self) -> MotionEquations:
+        """Of the middle alone, without what is left out."""
+        return replace(self, co=self.co.each(lambda one: one.middle), ladder=(terms_of(0, 0),))
 
     @property
     def rate(self) -> float:
@@ -115,30 +142,33 @@ class MotionEquations:
 
     def number(self, value: float) -> Wave:
         """A constant."""
-        return BoxLine(self.assembly, self.co, self.parameters, self.last).number(value)
+        return BoxLine(self.assembly, self.co, self.rows - 1, self.last).number(value)
 
     def input_speed(self, motion: MotionWaves) -> Wave:
         """w₀."""
         topo = self.assembly.topology
         return motion.speed[topo.coordinate[topo.group_of(0)]] if topo.free else self.co.speed
 
-    def rates(self, motion: MotionWaves) -> Rates:
-        """Along ``motion``, and everywhere within the rests of its waves."""
-        return _Evaluation(self, motion, self._walk(motion)).rates()
+    def rates(self, motion: MotionWaves, *, slopes: bool = True) -> Rates:
+        """Along ``motion``, and everywhere within the rests of its waves.
+
+        slopes : without, x′ alone.
+        """
+        return _Evaluation(self, motion, self._walk(motion), slopes).rates()
 
     def _walk(self, motion: MotionWaves) -> Walk:
         topo, shift = self.assembly.topology, list(self.co.shift)
         for e, compliance in enumerate(topo.compliances):
             s = topo.behind[compliance.shafts[-1], compliance.number]
             shift[s] = shift[s] + motion.twist[e]
-        return BoxLine(self.assembly, replace(self.co, shift=shift), self.parameters, self.last).walk()
+        return BoxLine(self.assembly, replace(self.co, shift=shift), self.rows - 1, self.last).walk()
 
 
 class _Evaluation:
     """Of one motion."""
 
-    def __init__(self, own: MotionEquations, motion: MotionWaves, walk: Walk) -> None:
-        self.own, self.motion, self.walk = own, motion, walk
+    def __init__(self, own: MotionEquations, motion: MotionWaves, walk: Walk, slopes: bool) -> None:
+        self.own, self.motion, self.walk, self.slopes = own, motion, walk, slopes
         self.topo = own.assembly.topology
         self.springs = len(self.topo.compliances)
         self.zero = own.number(0.0)
@@ -159,8 +189,9 @@ class _Evaluation:
             for j, one in by.items():
                 slopes[e, j] = one * self.over
             torque = own.co.torque[e] + own.co.stiffness[e] * self.motion.twist[e] + own.co.damping[e] * relative
-            by = {j: own.co.damping[e] * one for j, one in by.items()}
-            by[e] = by[e] + own.co.stiffness[e] if e in by else own.co.stiffness[e]
+            if self.slopes:
+                by = {j: own.co.damping[e] * one for j, one in by.items()}
+                by[e] = by[e] + own.co.stiffness[e] if e in by else own.co.stiffness[e]
             forces.append(torque)
             moved.append(by)
         by_drive = [self.zero] * own.size
@@ -175,16 +206,16 @@ class _Evaluation:
                     r, r1 = self.walk.relative[s], self.walk.relative_slope[s]
                     torque = torque + r * forces[e]
                     _add(by, moved[e], r)
-                    if r1.size:
+                    if self.slopes and r1.size:
                         _add(by, self.turned[i], r1 * forces[e])
             light = (own.co.over_mass[i] if i in own.co.over_mass else mass.inverse()) * self.over
             rates[row] = torque * light
-            if slope.size:  # of 1/M
+            if self.slopes and slope.size:  # of 1/M
                 _add(by, self.turned[i], slope * rates[row] * self.w0 * -1.0)
             for j, one in by.items():
                 slopes[row, j] = one * light
             by_drive[row] = self._driven(i) * light
-        if self.first >= 0:  # of 1/w₀
+        if self.slopes and self.first >= 0:  # of 1/w₀
             for j in range(own.size):
                 if rates[j].size:
                     less = rates[j] * self.over * -1.0
@@ -194,6 +225,8 @@ class _Evaluation:
     def _turned(self) -> list[dict[int, Wave]]:
         """By how much every unknown turns, by the twists, at the same φ."""
         found: list[dict[int, Wave]] = [{} for _ in range(self.topo.size)]
+        if not self.slopes:
+            return found
         for e, (far, near) in enumerate(self.topo.ends):
             r = self.walk.relative[self.topo.compliances[e].near]
             found[far] = {j: r * one for j, one in found[near].items()} if near >= 0 else {}
@@ -205,12 +238,15 @@ class _Evaluation:
         (far, near), s = self.topo.ends[e], self.topo.compliances[e].near
         r, r1 = self.walk.relative[s], self.walk.relative_slope[s]
         w = self.motion.speed[near] if near >= 0 else self.w0
+        relative = self.motion.speed[far] - r * w
+        if not self.slopes:
+            return relative, {}
         by = {self.springs + far: self.own.number(1.0)}
         if near >= 0:
             by[self.springs + near] = -r
             if r1.size:
                 _add(by, self.turned[near], r1 * w * -1.0)
-        return self.motion.speed[far] - r * w, by
+        return relative, by
 
     def _of(self, i: int) -> list[int]:
         return [s for s in range(len(self.topo.stations)) if self.topo.unknown_of[s] == i]
@@ -223,7 +259,7 @@ class _Evaluation:
             if inertia.size:
                 r, r1 = self.walk.relative[s], self.walk.relative_slope[s]
                 mass = mass + inertia * (r * r)
-                if r1.size:
+                if self.slopes and r1.size:
                     slope = slope + inertia * (r * r1) * 2.0
         return mass, slope
 
@@ -236,8 +272,9 @@ class _Evaluation:
             inertia = co.inertia[s]
             if inertia.size and r1.size:
                 torque = torque - inertia * (r * r1) * (w * w)
-                by_speed = by_speed - inertia * (r * r1) * w * 2.0
-                by_angle = by_angle - inertia * (r1 * r1 + r * r2) * (w * w)
+                if self.slopes:
+                    by_speed = by_speed - inertia * (r * r1) * w * 2.0
+                    by_angle = by_angle - inertia * (r1 * r1 + r * r2) * (w * w)
             sense = float(np.sign(self.topo.mean_speeds[s]))
             load = co.constant[s] * sense - self.motion.drive * (sense * float(self.own.drive[s]))
             if not (load.size or co.viscous[s].size or co.quadratic[s].size):
@@ -245,8 +282,10 @@ class _Evaluation:
             v = r * w
             modulus = speed_modulus(v) if co.quadratic[s].size else v
             resists = load + (co.viscous[s] + co.quadratic[s] * modulus) * v
-            growth = co.viscous[s] + co.quadratic[s] * modulus * 2.0
             torque = torque - r * resists
+            if not self.slopes:
+                continue
+            growth = co.viscous[s] + co.quadratic[s] * modulus * 2.0
             by_speed = by_speed - r * r * growth
             if r1.size:
                 by_angle = by_angle - r1 * resists - r * growth * (r1 * w)
@@ -272,7 +311,7 @@ def _add(to: dict[int, Wave], what: dict[int, Wave], by: Wave | float) -> None:
 def derivative(wave: Wave, rate: float) -> Wave:
     """By φ, of a wave without rest."""
     order = 1j * rate * np.arange(-wave.last, wave.last + 1)
-    return Wave(wave.parts * order, 1e-15 * float(np.abs(wave.parts * order).sum()), wave.powers)
+    return Wave(wave.parts * order, 1e-15 * float(np.abs(wave.parts * order).sum()), wave.terms)
 
 
 def residuals(own: MotionEquations, motion: MotionWaves, found: Rates) -> list[Wave]:
@@ -281,9 +320,9 @@ def residuals(own: MotionEquations, motion: MotionWaves, found: Rates) -> list[W
 
 
 def motion_of(own: MotionEquations, parts: Sequence[Complex], drive: Array) -> MotionWaves:
-    """States by their parts (1 + parameters, 2K + 1) and the torque's (1 + parameters,)."""
+    """States by their parts (rows, 2K + 1) and the torque's (rows,)."""
     many, last = len(own.assembly.topology.compliances), own.last
-    states = [Wave(np.asarray(one, dtype=complex), 0.0, own.powers) for one in parts]
-    torque = np.zeros((1 + own.parameters, 2 * last + 1), dtype=complex)
+    states = [Wave(np.asarray(one, dtype=complex), 0.0, own.terms) for one in parts]
+    torque = np.zeros((own.rows, 2 * last + 1), dtype=complex)
     torque[:, last] = drive
-    return MotionWaves(tuple(states[:many]), tuple(states[many:]), Wave(torque, 0.0, own.powers))
+    return MotionWaves(tuple(states[:many]), tuple(states[many:]), Wave(torque, 0.0, own.terms))

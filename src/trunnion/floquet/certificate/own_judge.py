@@ -33,12 +33,12 @@ from trunnion.equations.topology import require_period
 from trunnion.floquet.certificate.box_coefficients import NumberRange, box_coefficients
 from trunnion.floquet.certificate.box_equations import BoxMatrix, harmonics_needed
 from trunnion.floquet.certificate.judge import JudgedBox
-from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves, Rates, residuals
+from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves, residuals
 from trunnion.floquet.certificate.own_stages import own_stages, require_stages_kept
 from trunnion.floquet.certificate.own_start import Slowness, begun, solved
 from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, ModalBox, lyapunov_series, modal_box
 from trunnion.floquet.certificate.proof import check_tube
-from trunnion.floquet.certificate.waves import OUTWARD, UNIT, affine
+from trunnion.floquet.certificate.waves import OUTWARD, UNIT, Terms, affine, terms_of
 from trunnion.steady.free.free_balance import FreeBalance, SteadyStates
 from trunnion.steady.free.periodic_steady_states import SteadyStateCurve
 
@@ -52,8 +52,12 @@ FURTHER = 1.5
 """How far the torque takes the speed the second time, over what the first left uncovered."""
 NARROW = 0.05
 """Width in ln(speed) of the first box that is tried."""
-POWERS = 2
-"""Of the torque beyond it that are followed: its square and its cube. Boxes become twenty times as wide."""
+FIRST = 3
+"""Power of the torque up to which matrices follow it: boxes become twenty times as wide than with the first alone."""
+DEGREE = 4
+"""Of products of torque and tolerances up to which motions follow them, where there are few enough."""
+MOST_ROWS = 130
+"""Of them."""
 PER_HARMONIC = 24
 """Angles per harmonic at which P is looked at."""
 
@@ -127,19 +131,26 @@ class OwnMotionLine:
         row = assembly.table(1, middle)
         for one in ranges:
             one.columns.put(row, np.array([(one.low + one.high) / 2]))
-        many, stages = 1 + len(ranges) + POWERS, own_stages(assembly, row)
+        ladder, stages = _ladder(1 + len(ranges)), own_stages(assembly, row)
+        terms = ladder[-1]
         held, near = speeds, None
         if topo.free:
             # The first parameter is a torque, not the speed. Twists count from those of the mean loads at the speed
             # that it makes.
             held = middle, middle
             mean, half = _asked(speeds, further)
-            near = replace(affine(mean, {1: half}, many, last), powers=POWERS).inverse()
-        co = box_coefficients(assembly, held, ranges, last, POWERS, near)
+            near = affine(mean, {1: half}, len(terms) - 1, last, terms=terms).inverse()
+        co = box_coefficients(assembly, held, ranges, last, terms, near)
         drive = np.zeros(len(topo.stations))
         if topo.free:
             drive = -drive_torques(topo, drive_places(topo, assembly.packed.column, row), np.ones(1))[0]
-        return MotionEquations(assembly, co, many, last, drive, stages, POWERS)
+        return MotionEquations(assembly, co, ladder, last, drive, stages)
+
+
+def _ladder(parameters: int) -> tuple[Terms, ...]:
+    """Products of parameters that motions follow, order by order."""
+    found = [terms_of(parameters, degree, FIRST) for degree in range(1, DEGREE + 1)]
+    return tuple(one for k, one in enumerate(found) if not k or len(found[k - 1]) < len(one) <= MOST_ROWS)
 
 
 def _rows(row: Array, speeds: Array) -> Array:
@@ -158,7 +169,7 @@ def _asked(speeds: tuple[float, float], further: float) -> tuple[float, float]:
 def _slowness(own: MotionEquations, speeds: tuple[float, float], further: float) -> Slowness | None:
     if not own.assembly.topology.free:
         return None
-    asked = np.zeros(1 + own.parameters)
+    asked = np.zeros(own.rows)
     asked[:2] = _asked(speeds, further)
     return Slowness(asked)
 
@@ -176,21 +187,22 @@ class JudgedMotion:
 def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float, float]) -> JudgedMotion | None:
     """Whether a motion near ``motion`` exists at every one of ``speeds``, and attracts; None where the mean of the
     middle has no modes that decay."""
-    found = own.rates(motion)
-    box = _matrix(own, found)
+    left = residuals(own, motion, own.rates(motion, slopes=False))
+    linear = own.cut(own.ladder[0])
+    box = _matrix(linear, motion)
     modal = modal_box(box)
     if modal is None:
         return None
     series = lyapunov_series(box, modal)
-    left = np.abs(modal.to_modes) @ np.array([one.size for one in residuals(own, motion, found)]) * OUTWARD
-    first, least = check_tube(box, modal, series, left)
+    pushed = np.abs(modal.to_modes) @ np.array([one.size for one in left]) * OUTWARD
+    first, least = check_tube(box, modal, series, pushed)
     if not first.proved:
         at = series.parts[0].sum(axis=0)
         doubtful = not series.solved or not np.linalg.eigvalsh((at + at.conj().T) / 2)[0] > 0
         return JudgedMotion(JudgedBox(False, first.excess, first.blame, doubtful=doubtful))
 
     def missed(excess: float = np.inf) -> JudgedBox:
-        return JudgedBox(False, excess, _left_by_each(own, motion, modal))
+        return JudgedBox(False, excess, _left_by_each(own.terms, motion, modal))
 
     stiff = _least_eigenvalue(series)
     off = np.abs(modal.to_modes @ modal.modes - np.eye(own.size)).sum(axis=1).max()
@@ -201,7 +213,7 @@ def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float
     for _ in range(TUBES):
         height = WIDER * needed
         near = motion.widened(np.sqrt(height) * reach)
-        known, needed = check_tube(_matrix(own, own.rates(near)), modal, series, left)
+        known, needed = check_tube(_matrix(linear, near), modal, series, pushed)
         if not known.proved:
             return JudgedMotion(missed(known.excess))
         if needed < height:
@@ -215,17 +227,15 @@ def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float
     return JudgedMotion(missed())
 
 
-def _left_by_each(own: MotionEquations, motion: MotionWaves, modal: ModalBox) -> Array:
-    """What each parameter alone leaves over beside what decays (parameters,): what brings it says where to halve."""
-    many = own.parameters - own.powers
-    if many == 1:
-        return np.ones(1)
-    found = []
-    for v in range(1, 1 + many):
-        there, only = replace(own, co=own.co.along(v)), motion.along(v)
-        size = np.array([one.size for one in residuals(there, only, there.rates(only))])
-        found.append(float((np.abs(modal.to_modes) @ size / modal.decay).max()))
-    return np.array(found)
+def _left_by_each(terms: Terms, motion: MotionWaves, modal: ModalBox) -> Array:
+    """What halving each parameter would take from the products of the highest order that motions follow
+    (parameters,), the next of which are left over: it says where to halve."""
+    exponents = np.array(terms.exponents)
+    order = exponents.sum(axis=1)
+    highest = order >= order[exponents[:, 1:].any(axis=1)].max(initial=1)
+    sizes = np.abs(modal.to_modes) @ np.array([one.sizes for one in motion.states])
+    size = (sizes / modal.decay[:, None]).max(axis=0)
+    return np.asarray(size[highest] @ (1 - 0.5 ** exponents[highest]))
 
 
 def _uncovered(own: MotionEquations, motion: MotionWaves, speeds: tuple[float, float]) -> float:
@@ -244,17 +254,19 @@ def _uncovered(own: MotionEquations, motion: MotionWaves, speeds: tuple[float, f
     return missing if np.isfinite(missing) else 0.0
 
 
-def _matrix(own: MotionEquations, found: Rates) -> BoxMatrix:
-    """A = dF/dx over φ."""
+def _matrix(own: MotionEquations, motion: MotionWaves) -> BoxMatrix:
+    """A = dF/dx over φ along a motion. What products of its parameters bring that the equations do not follow is little
+    in matrices: it stands in their rests."""
+    found = own.rates(motion.cut(own.terms))
     size, springs = own.size, len(own.assembly.topology.compliances)
-    parts = np.zeros((1 + own.parameters, 2 * own.last + 1, size, size), dtype=complex)
+    parts = np.zeros((own.rows, 2 * own.last + 1, size, size), dtype=complex)
     rest = np.zeros((size, size))
     for (i, j), wave in found.slopes.items():
         parts[:, :, i, j], rest[i, j] = wave.parts, wave.rest
     stiffness = [one.mean.real for one in own.co.stiffness]
     mass = own.assembly.topology.on_unknowns(np.array([[one.mean.real for one in own.co.inertia]]))[0]
     energy = np.diag([*stiffness, *mass[: size - springs]])
-    return BoxMatrix(parts, rest * OUTWARD, own.rate, (1.0, 0.0), energy, own.powers)
+    return BoxMatrix(parts, rest * OUTWARD, own.rate, (1.0, 0.0), energy, own.rows - 1 - own.parameters)
 
 
 def _least_eigenvalue(series: LyapunovSeries) -> float:
