@@ -71,14 +71,14 @@ def near_boundary(rng: np.random.Generator) -> BentPair:
     return pair.at(damping=float(10**high * (1 + 10 ** rng.uniform(-1.5, 0.7))))
 
 
-def attack_own(rng: np.random.Generator, boxes: int, points: int, said: str) -> int:
-    """How many ``boxes`` around one pair are proved; fails where a line at one of their ``points`` moves outside the
-    tube, or disturbances die out slower than proved."""
+def attack_own(rng: np.random.Generator, boxes: int, points: int, said: str, widest: float = -2.5) -> int:
+    """How many ``boxes`` around one pair, with tolerances of 10^``widest`` at most, are proved; fails where a line at
+    one of their ``points`` moves outside the tube, or disturbances die out slower than proved."""
     pair, proved = near_boundary(rng), 0
     line = OwnMotionLine(pair.line)
     for box in range(boxes):
         wide = 10 ** rng.uniform(-5, -1.5)
-        share = {name: 10 ** rng.uniform(-6, -2.5) for name in NUMBERS if rng.random() < 0.4}
+        share = {name: 10 ** rng.uniform(widest - 3.5, widest) for name in NUMBERS if rng.random() < 0.4}
         speeds = pair.middle * (1 - wide / 2), pair.middle * (1 + wide / 2)
         read = read_tolerances(line.assembly, share) if share else ()
         ranges = [NumberRange(s.label, s.columns, s.low, s.high) for s in read]

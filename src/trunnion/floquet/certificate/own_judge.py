@@ -56,8 +56,8 @@ FIRST = 3
 """Power of the torque up to which matrices follow it: boxes become twenty times as wide than with the first alone."""
 DEGREE = 4
 """Of products of torque and tolerances up to which motions follow them, where there are few enough."""
-MOST_ROWS = 130
-"""Of them."""
+MOST_NUMBERS = 2500
+"""Harmonics of all products that a wave may have, beyond those of first order."""
 PER_HARMONIC = 24
 """Angles per harmonic at which P is looked at."""
 
@@ -131,7 +131,7 @@ class OwnMotionLine:
         row = assembly.table(1, middle)
         for one in ranges:
             one.columns.put(row, np.array([(one.low + one.high) / 2]))
-        ladder, stages = _ladder(1 + len(ranges)), own_stages(assembly, row)
+        ladder, stages = _ladder(1 + len(ranges), last), own_stages(assembly, row)
         terms = ladder[-1]
         held, near = speeds, None
         if topo.free:
@@ -147,10 +147,11 @@ class OwnMotionLine:
         return MotionEquations(assembly, co, ladder, last, drive, stages)
 
 
-def _ladder(parameters: int) -> tuple[Terms, ...]:
-    """Products of parameters that motions follow, order by order."""
+def _ladder(parameters: int, last: int) -> tuple[Terms, ...]:
+    """Products of parameters that motions of ``last`` harmonics follow, order by order."""
     found = [terms_of(parameters, degree, FIRST) for degree in range(1, DEGREE + 1)]
-    return tuple(one for k, one in enumerate(found) if not k or len(found[k - 1]) < len(one) <= MOST_ROWS)
+    most = MOST_NUMBERS / (2 * last + 1)
+    return tuple(one for k, one in enumerate(found) if not k or len(found[k - 1]) < len(one) <= most)
 
 
 def _rows(row: Array, speeds: Array) -> Array:

@@ -211,7 +211,7 @@ class Wave:
 
     @property
     def middle(self) -> Wave:
-        """That of the parameters alone, without what is left out."""
+        """As the middle of all parameters makes it, without what is left out."""
         return Wave(self.parts[:1], 0.0)
 
     def __add__(self, other: Wave | complex) -> Wave:
