@@ -232,8 +232,10 @@ def _left_by_each(terms: Terms, motion: MotionWaves, modal: ModalBox) -> Array:
     """What halving each parameter would take from the products of the highest order that motions follow
     (parameters,), the next of which are left over: it says where to halve."""
     exponents = np.array(terms.exponents)
-    order = exponents.sum(axis=1)
-    highest = order >= order[exponents[:, 1:].any(axis=1)].max(initial=1)
+    order, alone = exponents.sum(axis=1), ~exponents[:, 1:].any(axis=1)
+    most = order[~alone].max(initial=0) or order.max()
+    # Powers of the first alone may go further, and leave less.
+    highest = (order == most) & ~(alone & (most < order.max()))
     sizes = np.abs(modal.to_modes) @ np.array([one.sizes for one in motion.states])
     size = (sizes / modal.decay[:, None]).max(axis=0)
     return np.asarray(size[highest] @ (1 - 0.5 ** exponents[highest]))
