@@ -222,7 +222,6 @@ _UNANSWERED = {
 }
 _BASE = {
     **_DRY_FRICTION,
-    **_TREES,
     "free start": "bent, it is judged about its own periodic motion",
     "drive share": "belongs to free–free lines",
     "prescribed far end": "two prescribed speeds leave a line with joint angles nowhere to go",
@@ -230,6 +229,7 @@ _BASE = {
 _EXCITED = {key: _FORCES for key in _FORCING if key != "transmission error"}
 _UNPROVABLE = {
     **_BASE,
+    **_TREES,
     **_NO_RATIO,
     DRAGGED: "what it drags may stand anywhere, so that one disturbance never dies out",
     **dict.fromkeys((CURVE, LAG), "a curve over the speed is not enclosed"),

@@ -176,6 +176,27 @@ def require_tree(assembly: Assembly, what: str) -> None:
         )  # fmt: skip
 
 
+LONGEST_TIED = 24
+"""Unknowns of a line with a differential or a loop up to which its matrices are multiplied by the thousand."""
+
+
+def require_short_ties(assembly: Assembly) -> None:
+    """Refuse a line with a differential or a loop that is too long for charts and studies of many lines.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    topo = assembly.topology
+    if topo.graph and topo.size > LONGEST_TIED:
+        problem = "ties one shaft to two others" if topo.sums else "closes a loop"
+        raise InputError(
+            f"{problem} in a line of {topo.size} unknowns, of which charts and studies take {LONGEST_TIED}",
+            element=assembly.line.names[topo.knot],
+            remedy="join neighbouring parts, or ask stability() at single speeds",
+        )
+
+
 def require_share(assembly: Assembly) -> None:
     """Refuse a free line of which no disk says that it drives: nothing tells what torque accelerates it."""
     topo, table = assembly.topology, assembly.table(1)

@@ -84,7 +84,7 @@ class ChartFamily(Protocol):
 
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
         """How to sample grids in the patch variables when building the patches of ``box``; by slabs where they pay."""
-        return _point_by_point(self, box, tolerance, threads)
+        return point_by_point(self, box, tolerance, threads)
 
     def leading(
         self, box: Box, pixels: int, tolerance: float, threads: int, report_progress: Callable[[float], None]
@@ -258,6 +258,12 @@ class LineFamily(ChartFamily):
             return 1.0, 1.0
         return float(max(share.max(), (rounding / bound).min())), float(bound.max() / COMPARED)
 
+    def matrices_of(self, table: Array, tolerance: float, threads: int) -> Array:
+        """Monodromy matrices of cases of packed numbers (case, column), over whole periods."""
+        return chain_monodromy(self.program, self.batch_of(table), Window(0.0, self.period, False), tolerance, threads)[
+            0
+        ]
+
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """See ``ChartFamily``."""
         return quantities(*self.matrices(x, y, tolerance / AMPLIFICATION.get(self.size, 4), threads))
@@ -269,7 +275,7 @@ class LineFamily(ChartFamily):
     def sampler(self, box: Box, pixels: int, tolerance: float, threads: int, *, slabs: bool = True) -> Sampler:
         """By slabs where the period spans many radians of the highest mode, else by plain integration."""
         if not slabs or pixels < FEWEST_PIXELS:
-            return _point_by_point(self, box, tolerance, threads)
+            return point_by_point(self, box, tolerance, threads)
         batch = self._patch_batch(*spread(box))
         program = self.program
         # One window serves the whole box, so it must suit every point of it: corners alone would not tell.
@@ -280,7 +286,7 @@ class LineFamily(ChartFamily):
         edges = slab_edges(swiftest * np.sqrt(self.size), *self._swiftness(spread(box, 5), window.begin, length))
         count = len(edges) - 1
         if count < FEWEST_SLABS:
-            return _point_by_point(self, box, tolerance, threads)
+            return point_by_point(self, box, tolerance, threads)
         # Slabs are so cheap that a sharper tolerance costs little, and every bound below grows with it.
         sharper = tolerance / (10 if self.size <= 2 else 100)
 
@@ -290,7 +296,7 @@ class LineFamily(ChartFamily):
 
         built = build_slabs(propagate, box, edges, 2 * self.size, sharper / 4)
         if built is None:
-            return _point_by_point(self, box, tolerance, threads)
+            return point_by_point(self, box, tolerance, threads)
 
         def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
             return [
@@ -482,7 +488,7 @@ class Sampler:
     boxes: list[Box]
 
 
-def _point_by_point(family: ChartFamily, box: Box, tolerance: float, threads: int) -> Sampler:
+def point_by_point(family: ChartFamily, box: Box, tolerance: float, threads: int) -> Sampler:
     """Sample grids by plain evaluation of all their points in one call."""
 
     def evaluate(u: Array, v: Array) -> tuple[Array, Array]:

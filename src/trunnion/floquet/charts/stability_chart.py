@@ -26,6 +26,7 @@ from trunnion.equations.steady_base import (
     has_periodic_base,
     require_no_steady_state,
     require_own_motion,
+    require_short_ties,
     require_steady_base,
     require_tree,
 )
@@ -314,14 +315,24 @@ def _line_task(
     across, up, clipped, base = _axes_of(assembly, x, y, speed)
     corners = _corners(assembly, across, up, base)
     require_steady_base(assembly, corners)
-    require_tree(assembly, "charts do")
+    if has_periodic_base(assembly, corners):
+        require_tree(assembly, "charts do")
     refuse_pendulums(assembly.line, NOT_ALIKE)
-    family = LineFamily(assembly, across, up, base, twisted)
+    family = family_of(assembly, across, up, base, twisted)
     _refuse_too_long(family)
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]
     remarks = (*clipped, *_idle(family, across, up, "line", numpy_only), *said)
     return Task(family, across, up, None if np.isnan(base) else base, assembly.line, remarks)
+
+
+def family_of(assembly: Assembly, x: ChartAxis, y: ChartAxis, speed: float, twisted: bool) -> LineFamily:
+    """A line over two axes, as what integrates it takes it."""
+    if not assembly.topology.graph:
+        return LineFamily(assembly, x, y, speed, twisted)
+    from trunnion.floquet.charts.tied_family import TiedLineFamily
+
+    return TiedLineFamily(assembly, x, y, speed, twisted)
 
 
 def _axes_of(
@@ -357,7 +368,8 @@ def _corners(assembly: Assembly, across: ChartAxis, up: ChartAxis, base: float) 
 def _refuse_too_long(family: LineFamily) -> None:
     """Refuse a chart of a long line that would not end, or fill the memory."""
     size, pixels = family.size, len(family.x.values) * len(family.y.values)
-    if size <= LARGEST_DENSE:
+    require_short_ties(family.assembly)
+    if size <= LARGEST_DENSE or family.assembly.topology.graph:
         return
     ends = family.x.values[[0, 0, -1, -1]], family.y.values[[0, -1, 0, -1]]
     seconds = long_chart_seconds(size, pixels, family.phase(*ends), family.needs_stages)
@@ -501,4 +513,4 @@ def family_of_chart(chart: StabilityChart) -> LineFamily:
     ]
     (across, _), (up, _) = axis(assembly, ends[0], "x"), axis(assembly, ends[1], "y")
     speed = float("nan") if chart.speed is None else chart.speed
-    return LineFamily(assembly, across, up, speed, chart.statically_twisted)
+    return family_of(assembly, across, up, speed, chart.statically_twisted)

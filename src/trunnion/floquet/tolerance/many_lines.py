@@ -12,17 +12,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.arrays import Array, Flags
+from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.equations.chain_batch import chain_batch, chain_program, loaded_by_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
-from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base, require_tree
+from trunnion.equations.steady_base import refuse_periodic_base, require_short_ties, require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import quantities
 from trunnion.floquet.charts.chart_pixels import Pixels, judge
+from trunnion.floquet.propagation.tied_lines import tied_matrices
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
-from trunnion.numerics.chain.exponential_monodromy import step_halving
+from trunnion.numerics.chain.exponential_monodromy import March, marched, step_halving
 from trunnion.numerics.threads import on_threads
 from trunnion.numerics.workers import Workers
 
@@ -52,7 +54,8 @@ class ManyLines:
         require_period(assembly.line, assembly.topology)
         refuse_periodic_base(assembly, "put a ConstantSpeed in front", bends=False)
         require_steady_base(assembly, table)
-        require_tree(assembly, "studies of many lines do")
+        refuse_converters(assembly.line, "studies of many lines do")
+        require_short_ties(assembly)
         refuse_pendulums(assembly.line, NOT_ALIKE)
         return cls(assembly, twisted, threads)
 
@@ -64,6 +67,8 @@ class ManyLines:
     def matrices(self, table: Array, tolerance: float) -> tuple[Array, Array, Array]:
         """Monodromy matrices of rows of ``table`` in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
         topo = self.assembly.topology
+        if topo.graph:
+            return tied_matrices(self.assembly, table, self.statically_twisted, tolerance)
         coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
         by_speed = loaded_by_speed(topo, coefficients)
         program, batch = chain_program(topo, coefficients, by_speed), chain_batch(topo, coefficients, by_speed)
@@ -131,22 +136,31 @@ class ManyLines:
         steps = steps_that_see(fastest_cycles(self.assembly, self.period))
 
         def run(rows: Array) -> Pixels:
-            co = self.assembly.coefficients(rows, statically_twisted=self.statically_twisted)
-            by_speed = loaded_by_speed(topo, co)
-            batch = chain_batch(topo, co, by_speed)
-            points = ChainExponentials(chain_program(topo, co, by_speed), batch, self.period, steps)
-            rest = LineRates.of(self.assembly, rows, self.statically_twisted).rest() if topo.still else None
+            rates = LineRates.of(self.assembly, rows, self.statically_twisted) if topo.still or topo.graph else None
+            rest = rates.rest() if rates and topo.still else None
             beside = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
+            march, trace = self._marched(rows, rates, steps)
             found = step_halving(
-                lambda which, count: points.monodromies(which, count)[0],
-                len(rows), 2 * topo.size, tolerance=COARSE, least_steps=steps, aside=beside,
+                march, len(rows), 2 * topo.size, tolerance=COARSE, least_steps=steps, aside=beside
             )  # fmt: skip
-            _, trace = points.monodromies(np.arange(len(rows)), steps)
             error = np.where(np.isfinite(found.radius), found.error, np.inf)
             return Pixels.of(found.radius, error, found.critical, trace, topo.size)
 
         parts = np.array_split(table, max(1, -(-len(table) // STEPPED_AT_ONCE)))
         return _joined(on_threads(run, parts, self.threads))
+
+    def _marched(self, rows: Array, rates: LineRates | None, steps: int) -> tuple[March, Array]:
+        """Matrices of ``rows`` in so many steps, and ∫ tr(M⁻¹C) dτ: of trees by the kernel, of others by ``rates``."""
+        topo = self.assembly.topology
+        if topo.graph:
+            assert rates is not None
+            return lambda which, count: marched(rates, which, 2 * topo.size, rates.period, count), rates.trace
+        co = self.assembly.coefficients(rows, statically_twisted=self.statically_twisted)
+        by_speed = loaded_by_speed(topo, co)
+        program, batch = chain_program(topo, co, by_speed), chain_batch(topo, co, by_speed)
+        points = ChainExponentials(program, batch, self.period, steps)
+        trace = points.monodromies(np.arange(len(rows)), steps)[1]
+        return lambda which, count: points.monodromies(which, count)[0], trace
 
     def growth(self, table: Array, found: Pixels) -> Array:
         """Growth rates [1/s] at the speeds of ``table``; of a radius smaller than its error that of the error, NaN

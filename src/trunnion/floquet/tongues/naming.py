@@ -24,7 +24,6 @@ from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.tongues.rows import InstabilityKind
 from trunnion.modes.mode_content import excited
 from trunnion.modes.resonance_speeds import Resonance, sources
-from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
 
 STEPS = 160
 """Points of the way from straight joints to bent ones."""
@@ -50,9 +49,7 @@ def partly_bent(family: LineFamily, x: Array, y: Array, share: Array, threads: i
     assembly, table = family.assembly, family.table(x, y)
     bent = [c for c, label in enumerate(assembly.packed.labels) if _bends(assembly, label)]
     table[:, bent] *= share[:, None]
-    window = Window(0.0, family.period, False)
-    matrix, _, _ = chain_monodromy(family.program, family.batch_of(table), window, TOLERANCE, threads)
-    return eigenvalues(matrix)
+    return eigenvalues(family.matrices_of(table, TOLERANCE, threads))
 
 
 def eigenvalues(matrix: Array) -> Complex:
