@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from oracles.loaded_pair import Pair
 
 import trunnion as tn
 
@@ -18,3 +19,13 @@ def test_proved_beside_satisfied(angle: float, damping: float, proved: bool) -> 
     said = check(line, speeds)
     assert ("proved for every speed of the range" in said) is proved
     assert not proved or tn.certify_stability(line, {}, speeds).verdict == "proved stable"
+
+
+def test_a_line_that_swings_is_proved_about_the_motion_that_it_makes() -> None:
+    """Where few boxes are enough; a line that grows about it is not, whatever holds about the static twist."""
+    swings = Pair(c_1=3.0, c_2=3.0, load=150.0, angle_1=0.1, angle_2=0.1).line
+    assert check(swings, (60.0, 80.0)).endswith(
+        "; proved for every speed of the range about the motion that the line makes"
+    )
+    grows = tn.assess(Pair().line, (77.24, 77.26)).check("parametric stability")
+    assert str(grows.status) == "exceeded" and "proved" not in grows.because

@@ -155,6 +155,7 @@ def certify_stability(
     tolerance: Tolerances,
     speeds: SpeedRange,
     boxes: int = 20_000,
+    about_steady_state: AboutSteadyState = False,
     write: Annotated[Path | None, OptionReader(place_of_line)],
     file: Annotated[str, InputAttribute("file")],
     unit: SpeedUnit,
@@ -167,7 +168,9 @@ def certify_stability(
     --write PATH  Write the line of a counterexample as a driveline file.
     """
     given = dict(tolerance) if tolerance else None
-    found = tn.certify_stability(line, given, speeds, most_boxes=boxes, progress=progress)
+    found = tn.certify_stability(
+        line, given, speeds, most_boxes=boxes, about_steady_state=about_steady_state, progress=progress
+    )
     if write is None or found.unstable_line is None:
         return CommandOutput(found.in_unit(unit))
     tn.dump(found.unstable_line, write, comments_of=file_of_line(file))

@@ -6,9 +6,10 @@ The margin is the share that joints and meshes leave of the damping of the strai
 slowest disturbance: 100 % where they take nothing, 0 on the border of stability. Every resonance that may open is
 looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``). Lines with joint angles and with
 play or stages that are free–free, where each speed takes its own periodic motion, are searched alike from fewer speeds;
-resonances are then those of the stages that the static load puts them in. Where a certificate of a few boxes proves
-the whole range, the check says so. Driven lines are judged about their static twist; where their joints swing, about
-the periodic motion that joints and loads make, searched alike: it may be unstable where the static twist takes nothing.
+resonances are then those of the stages that the static load puts them in. Driven lines are judged about their static
+twist; where their joints swing, about the periodic motion that joints and loads make, searched alike: it may be
+unstable where the static twist takes nothing. Where a certificate of a few boxes proves the whole range, about that
+motion or the static twist, the check says so.
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -53,6 +54,8 @@ STILL = 1e-3
 """Share of the growth about a line's own motion below which that about its static twist is none."""
 BOXES = 6
 """Boxes for a proof, each of some hundredths of a second."""
+OWN_BOXES = 32
+"""The same about the motion that a line makes, times its unknowns: each takes about a tenth of a second for one."""
 NAME = "parametric stability"
 NOT_EXCITED = "no joint has an angle and no mesh varies: nothing excites the line parametrically"
 
@@ -115,10 +118,10 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     status = Status.NOT_JUDGED if found.gaps else Status.SATISFIED
     proof = ""
     if status is Status.SATISFIED and subject.naming:
-        proof = PROVED if not own and _proved(case) else SEARCHED
-        if proof == PROVED:
-            about = " about the static twist" if found.about_steady_state else ""
-            because += f"; proved for every speed of the range{about}"
+        proved = _proved(case, found, alike=not own)
+        proof = SEARCHED if proved is None else PROVED
+        if proved is not None:
+            because += f"; proved for every speed of the range{proved}"
     yield replace(_judged(case, status, because + own + gaps, float(share), worst, (), covered), proof=proof)
 
 
@@ -165,14 +168,22 @@ def _constant_power(case: LoadCaseResponse) -> str:
     )
 
 
-def _proved(case: LoadCaseResponse) -> bool:
-    """Whether a few boxes prove what the search has found, as they mostly do of damped lines."""
+def _proved(case: LoadCaseResponse, found: UnstableRanges, *, alike: bool) -> str | None:
+    """What a few boxes prove what the search has found about, as they mostly do of damped lines: a clause, empty where
+    nothing needs to be said; None where they do not. ``alike`` : whether growth about the static twist is the same."""
     if case.span.put or not 0 < case.low < case.high:
-        return False
+        return None
     # Loaded where needed: it brings the compiler with it.
     from trunnion.floquet.certificate.certify import proved_over
 
-    return proved_over(case.assembly, (case.low, case.high), BOXES)
+    ends = case.low, case.high
+    if found.about_steady_state:
+        boxes = OWN_BOXES // case.assembly.topology.size
+        if boxes and proved_over(case.assembly, ends, boxes, about_steady_state=True):
+            return " about the motion that the line makes"
+    if not alike or not proved_over(case.assembly, ends, BOXES):
+        return None
+    return " about the static twist" if found.about_steady_state else ""
 
 
 def _covered(case: LoadCaseResponse, found: UnstableRanges) -> tuple[tuple[float, float], ...]:

@@ -31,7 +31,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
 from trunnion.floquet.certificate.judge import JudgedBox, judge
-from trunnion.floquet.certificate.own_requirements import require_enclosed, swings_by_itself
+from trunnion.floquet.certificate.own_requirements import about_own_motion, require_enclosed
 from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.floquet.certificate.working_stages import working_stages
 from trunnion.floquet.tolerance.parameter_intervals import table_at
@@ -134,6 +134,7 @@ def certify_stability(
     speeds: SpeedEnds | None = None,
     *,
     most_boxes: int = 20_000,
+    about_steady_state: bool = False,
     within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> StabilityCertificate:
@@ -150,12 +151,14 @@ def certify_stability(
         Normal distributions count as three standard deviations either way.
     speeds : lowest and highest [rad/s]; None for the range of the description.
     most_boxes : boxes judged before the rest is left undecided.
+    about_steady_state : about the periodic motion that a driven line really makes, as in ``stability``: that there is
+        one at every speed, and that it attracts. A free–free line with joint angles is always proved about it.
     within : seconds after which the rest is left undecided, and ``ended`` says so.
     progress : called as progress(share done).
 
     Raises
     ------
-    InputError : the line, or what scatters, is none of these.
+    InputError : the line, or what scatters, is none of these; straight joints with ``about_steady_state``.
 
     Examples
     --------
@@ -173,7 +176,7 @@ def certify_stability(
     assembly = assemble(line)
     given = assembly.line.tolerances_by_path if tolerances is None else tolerances
     spreads = read_tolerances(assembly, given) if given or not isinstance(given, dict) else ()
-    own = swings_by_itself(assembly, spreads)
+    own = about_own_motion(assembly, spreads, asked=about_steady_state)
     require_provable(assembly, own=own)
     require_steady_base(assembly, assembly.table(4, np.linspace(*span, 4)))
     space = _Space(assembly, spreads, span, _own_motion(assembly.line) if own else None)
@@ -241,10 +244,11 @@ class _Space(BoxSpace):
     def unstable_at(self, shares: Array) -> tuple[Driveline, dict[str, float]] | None:
         """The line at ``shares`` (variables,) and its numbers, if ``stability`` finds it unstable."""
         line, speed, known = self.line_at(shares)
+        swings = self.own is not None and has_joint_angles(assemble(line))
         try:
             from trunnion.floquet.stability.stability import stability  # brings the compiler with it
 
-            verdict = stability(line, speed).verdict
+            verdict = stability(line, speed, about_steady_state=swings).verdict
         except ComputationError:  # too stiff to be followed, or no motion was found: no counterexample
             return None
         if verdict is not Verdict.UNSTABLE:
@@ -305,6 +309,8 @@ class _BoxSearch:
             if ended := time_is_up():
                 self.ended = ended
                 return
+            if not self.refutes and self._in_vain:
+                return
             _, _, box = heapq.heappop(self._todo)
             with to_the_end():
                 found = self.space.judged(box)
@@ -319,6 +325,12 @@ class _BoxSearch:
                 else:
                     self._halve(box, found.blame)
             self.report_progress(min(max(1 - open_share, 0.0), 0.999))
+
+    @property
+    def _in_vain(self) -> bool:
+        """Whether the boxes left cover no more than a part of what is ahead, each as wide as it may become."""
+        left = self.most - self.judged
+        return 1 - self._ahead > self._width * (WIDENED**left - 1) / (WIDENED - 1)
 
     def _put_next(self) -> bool:
         """All tolerances at the next speeds, as wide as lately proved; whether any are left."""
@@ -354,15 +366,21 @@ class _BoxSearch:
             self._put(one)
 
 
-def proved_over(assembly: Assembly, speeds: tuple[float, float], most_boxes: int) -> bool:
-    """Whether a line as it is is proved stable at all ``speeds`` [rad/s] by as many boxes at most."""
+def proved_over(
+    assembly: Assembly, speeds: tuple[float, float], most_boxes: int, *, about_steady_state: bool = False
+) -> bool:
+    """Whether a line as it is is proved stable at all ``speeds`` [rad/s] by as many boxes at most; with
+    ``about_steady_state`` about the periodic motion that it makes."""
     try:
-        require_provable(assembly)
-        require_linear(assembly, speeds, ())
-    except InputError:
+        require_provable(assembly, own=about_steady_state)
+        if about_steady_state:
+            require_enclosed(assembly, (), speeds[0])
+        require_linear(assembly, speeds, (), own=about_steady_state)
+        own = _own_motion(assembly.line) if about_steady_state else None
+        found = _BoxSearch(_Space(assembly, (), speeds, own), most_boxes, lambda share: None, refutes=False)
+        found.run()
+    except (InputError, ComputationError):  # a motion may leave the stage of a spring
         return False
-    found = _BoxSearch(_Space(assembly, (), speeds), most_boxes, lambda share: None, refutes=False)
-    found.run()
     return not len(found.open_boxes)
 
 

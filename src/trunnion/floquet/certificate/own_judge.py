@@ -10,6 +10,9 @@ Then V′ ≤ −2μV + 2√V √(R*PR), and where √(R*PR) < μρ no motion le
 motion, and all multipliers of that are e^(−μ·period) at most (Demidovich's and Lohmiller and Slotine's contraction).
 N is checked as in ``proof``, with the tube in the rests of the waves.
 
+A driven line has all its multipliers in x: its angle is φ = Ωt, and the first parameter is the speed Ω itself, so that
+a box holds every speed from end to end.
+
 A free–free line has all its multipliers but the 1 of its phase in x, which is taken over the angle of its input, and
 the first parameter is the constant torque that drives it. Motions depend on that continuously, and so do their mean
 speeds: where it takes the mean speed from below the box to above it, every speed between is one of a motion that is
@@ -34,6 +37,7 @@ from trunnion.floquet.certificate.box_coefficients import NumberRange, box_coeff
 from trunnion.floquet.certificate.box_equations import BoxMatrix, harmonics_needed
 from trunnion.floquet.certificate.judge import JudgedBox
 from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves, residuals
+from trunnion.floquet.certificate.own_speeds import chebyshev_points, motions_over_speeds
 from trunnion.floquet.certificate.own_stages import own_stages, require_stages_kept
 from trunnion.floquet.certificate.own_start import Slowness, begun, solved
 from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, ModalBox, lyapunov_series, modal_box
@@ -56,6 +60,9 @@ FIRST = 3
 """Power of the torque up to which matrices follow it: boxes become twenty times as wide than with the first alone."""
 DEGREE = 4
 """Of products of torque and tolerances up to which motions follow them, where there are few enough."""
+DRIVEN_NARROW, DRIVEN_FIRST = 0.2, 4
+"""Width and power of a driven line, whose first parameter is the speed: motions follow it to the same, no less than
+``DEGREE``."""
 MOST_NUMBERS = 2500
 """Harmonics of all products that a wave may have, beyond those of first order."""
 PER_HARMONIC = 24
@@ -67,7 +74,11 @@ class OwnMotionLine:
     """A line about its own motion, box by box."""
 
     line: Driveline
-    narrow = NARROW
+
+    @property
+    def narrow(self) -> float:
+        """Width in ln(speed) of the first box that is tried."""
+        return NARROW if self.assembly.topology.free else DRIVEN_NARROW
 
     @cached_property
     def assembly(self) -> Assembly:
@@ -85,7 +96,7 @@ class OwnMotionLine:
         with np.errstate(all="ignore"):
             try:
                 found = self.enclosed(speeds, ranges)
-            except (ZeroDivisionError, np.linalg.LinAlgError):
+            except (ArithmeticError, np.linalg.LinAlgError):
                 found = None
         return JudgedBox(False, np.inf, np.ones(1 + len(ranges)), doubtful=True) if found is None else found.verdict
 
@@ -111,19 +122,40 @@ class OwnMotionLine:
         row = self.assembly.table(1, middle)
         for one in ranges:
             one.columns.put(row, np.array([(one.low + one.high) / 2]))
-        motions = SteadyStateCurve(self.balance.along(lambda value: _rows(row, value)), speeds).at_all(
-            np.array([middle])
-        )
-        if not (motions.found[0] and motions.resolved[0]):
+        free = self.assembly.topology.free
+        points = np.zeros(1) if free else chebyshev_points(self.first)
+        curve = SteadyStateCurve(self.balance.along(lambda value: _rows(row, value)), speeds)
+        motions = curve.at_all(middle + points * (speeds[1] - speeds[0]) / 2)
+        if not (motions.found.all() and motions.resolved.all()):
             return None
         own = self._equations(speeds, ranges, motions, further)
+        if not free:
+            return self._begun_driven(own, motions)
         found = solved(own, begun(own, motions), _slowness(own, speeds, further))
         if found is not None:
             require_stages_kept(self.assembly, own.stages, own.beyond(found), middle)
         return None if found is None else (own, found)
 
+    def _begun_driven(self, own: MotionEquations, motions: SteadyStates) -> tuple[MotionEquations, MotionWaves] | None:
+        found = motions_over_speeds(own, motions)
+        if found is None:
+            return None
+        motion, each = found
+        for speed, (single, there) in zip(motions.value.tolist(), each, strict=True):
+            require_stages_kept(self.assembly, single.stages, single.beyond(there), speed)
+        return own, motion
+
+    @property
+    def first(self) -> int:
+        """Power of the first parameter that is followed."""
+        return FIRST if self.assembly.topology.free else DRIVEN_FIRST
+
     def _equations(
-        self, speeds: tuple[float, float], ranges: Sequence[NumberRange], motions: SteadyStates, further: float
+        self,
+        speeds: tuple[float, float],
+        ranges: Sequence[NumberRange],
+        motions: SteadyStates,
+        further: float,
     ) -> MotionEquations:
         assembly, topo = self.assembly, self.assembly.topology
         middle = sum(speeds) / 2
@@ -131,7 +163,7 @@ class OwnMotionLine:
         row = assembly.table(1, middle)
         for one in ranges:
             one.columns.put(row, np.array([(one.low + one.high) / 2]))
-        ladder, stages = _ladder(1 + len(ranges), last), own_stages(assembly, row)
+        ladder, stages = _ladder(1 + len(ranges), last, self.first), own_stages(assembly, row)
         terms = ladder[-1]
         held, near = speeds, None
         if topo.free:
@@ -147,9 +179,9 @@ class OwnMotionLine:
         return MotionEquations(assembly, co, ladder, last, drive, stages)
 
 
-def _ladder(parameters: int, last: int) -> tuple[Terms, ...]:
+def _ladder(parameters: int, last: int, first: int) -> tuple[Terms, ...]:
     """Products of parameters that motions of ``last`` harmonics follow, order by order."""
-    found = [terms_of(parameters, degree, FIRST) for degree in range(1, DEGREE + 1)]
+    found = [terms_of(parameters, degree, first) for degree in range(1, DEGREE + 1)]
     most = MOST_NUMBERS / (2 * last + 1)
     return tuple(one for k, one in enumerate(found) if not k or len(found[k - 1]) < len(one) <= most)
 
@@ -213,6 +245,8 @@ def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float
     needed = least
     for _ in range(TUBES):
         height = WIDER * needed
+        if not np.isfinite(height):
+            break
         near = motion.widened(np.sqrt(height) * reach)
         known, needed = check_tube(_matrix(linear, near), modal, series, pushed)
         if not known.proved:

@@ -1,4 +1,7 @@
-"""Which lines are proved about their own periodic motion, and what the others lack."""
+"""Which lines are proved about their own periodic motion, which may be, and what the others lack.
+
+A free–free line with joint angles has no other steady motion; a driven one is proved about it where that is asked for.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.loads import drive_places
-from trunnion.equations.steady_base import has_joint_angles
+from trunnion.equations.steady_base import has_joint_angles, require_own_motion
 from trunnion.errors import InputError
 from trunnion.floquet.certificate.box_coefficients import ANGLE, NumberRange, staged
 from trunnion.floquet.certificate.own_stages import stage_obstacle
@@ -34,14 +37,19 @@ SAME_SHARE = 1e-12
 REMEDY = "stability() and tolerance_study() take it"
 
 
-def swings_by_itself(assembly: Assembly, spreads: Sequence[Spread]) -> bool:
-    """Whether a line has no other steady motion than a periodic one: free–free, with joint angles, its own or within
-    their tolerances."""
-    if not assembly.topology.free:
-        return False
+def about_own_motion(assembly: Assembly, spreads: Sequence[Spread], *, asked: bool) -> bool:
+    """Whether a line is proved about its own periodic motion: where that is ``asked`` for, and of a free–free line that
+    has joint angles, its own or within their tolerances.
+
+    Raises
+    ------
+    InputError : asked for of straight joints.
+    """
     place = list(assembly.packed.place)
-    keys = {place[column][1] for one in spreads for column in one.columns.index.tolist()}
-    return has_joint_angles(assembly) or ANGLE in keys
+    bends = any(place[column][1] == ANGLE for one in spreads for column in one.columns.index.tolist())
+    if asked and not bends:
+        require_own_motion(assembly, assembly.table(1))
+    return asked or (assembly.topology.free and (bends or has_joint_angles(assembly)))
 
 
 def require_enclosed(assembly: Assembly, ranges: Sequence[NumberRange], speed: float) -> None:
@@ -68,8 +76,9 @@ def require_enclosed(assembly: Assembly, ranges: Sequence[NumberRange], speed: f
                 "is one of several springs in series, which are not enclosed about the line's own motion",
                 element=line.names[compliance.shafts[1]], remedy="write them as one Shaft, or put a Disk between",
             )  # fmt: skip
-    _require_speed_held(assembly, speed)
-    _require_drive_kept(assembly, ranges, speed)
+    if topo.free:
+        _require_speed_held(assembly, speed)
+        _require_drive_kept(assembly, ranges, speed)
 
 
 def _obstacle(element: Element) -> str:
