@@ -54,8 +54,8 @@ STILL = 1e-3
 """Share of the growth about a line's own motion below which that about its static twist is none."""
 BOXES = 6
 """Boxes for a proof, each of some hundredths of a second."""
-OWN_BOXES = 32
-"""The same about the motion that a line makes, times its unknowns: each takes about a tenth of a second for one."""
+OWN_BOXES = 8
+"""The same about the motion that a line makes, times its unknowns: each takes some tenths of a second."""
 NAME = "parametric stability"
 NOT_EXCITED = "no joint has an angle and no mesh varies: nothing excites the line parametrically"
 

@@ -328,8 +328,11 @@ class _BoxSearch:
 
     @property
     def _in_vain(self) -> bool:
-        """Whether the boxes left cover no more than a part of what is ahead, each as wide as it may become."""
+        """Whether the boxes left cover no more than a part of what is ahead, each as wide as it may become; about own
+        motions, a box of which takes long, whether one was not proved."""
         left = self.most - self.judged
+        if self.space.own is not None and self.judged > len(self.proved):
+            return True
         return 1 - self._ahead > self._width * (WIDENED**left - 1) / (WIDENED - 1)
 
     def _put_next(self) -> bool:
