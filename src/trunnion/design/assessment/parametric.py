@@ -173,7 +173,6 @@ def _proved(case: LoadCaseResponse, found: UnstableRanges, *, alike: bool) -> st
     nothing needs to be said; None where they do not. ``alike`` : whether growth about the static twist is the same."""
     if case.span.put or not 0 < case.low < case.high:
         return None
-    # Loaded where needed: it brings the compiler with it.
     from trunnion.floquet.certificate.certify import proved_over
 
     ends = case.low, case.high

@@ -89,7 +89,7 @@ class OwnMotionLine:
     def balance(self) -> FreeBalance:
         """Of its harmonics."""
         turns = require_period(self.assembly.line, self.assembly.topology)
-        return FreeBalance(self.assembly, 2 * np.pi * float(turns))
+        return FreeBalance(self.assembly, 2 * np.pi * float(turns), compiled=False)
 
     def judged(self, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> JudgedBox:
         """The verdict on one box."""

@@ -54,7 +54,7 @@ def begun(own: MotionEquations, motions: SteadyStates) -> MotionWaves:
     turn = 2 * np.pi / own.rate
     angle = turn * np.arange(times) / times
     rows = fourier.resized(motions.rows[0], max(motions.h, last))
-    twists = fourier.rows_of(motions.observed().twist[0].T, motions.h)
+    twists = fourier.rows_of(motions.twists[0].T, motions.h)
     twists[:, 0] -= own.twisted
     rates = fourier.rate(rows, 1.0) * float(motions.rate[0])
     place = topo.coordinate[topo.group_of(0)] if topo.free else -1

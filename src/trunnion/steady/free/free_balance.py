@@ -179,6 +179,19 @@ class SteadyStates:
         ]
         return LineMotion(*(np.stack([getattr(one, key) for one in each]) for key in ("twist", "torque", "rotation")))
 
+    @property
+    def twists(self) -> Array:
+        """Twist of every spring (case, time, spring) [rad] along the motions, none of several shafts in series; of a
+        tree without the compiled equations."""
+        if not self.balance.of_tree:
+            return self.observed().twist
+        topo, co = self.balance.assembly.topology, self.coefficients
+        angle = base_motion(topo, co, self.tau, given=self._given).angle
+        far = [topo.reference[one.far_group] if one.far is None else one.far for one in topo.compliances]
+        behind = [topo.behind[one.shafts[-1], one.number] for one in topo.compliances]
+        turned = angle[..., far] - angle[..., [one.near for one in topo.compliances]]
+        return np.asarray(turned - co.shift[:, None, behind])
+
     def part(self, at: slice) -> SteadyStates:
         """Some of them."""
         read = None if self.read is None else self.read[at]
