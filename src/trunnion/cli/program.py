@@ -6,7 +6,6 @@ import os
 import sys
 import warnings
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any
 
 import typer
@@ -174,5 +173,7 @@ def main(args: list[str] | None = None) -> None:
     except KeyboardInterrupt:  # before a command was reached, or after it
         sys.exit(answer(Interrupted(), sys.argv[1:] if args is None else args))
     finally:
-        with suppress(KeyboardInterrupt):  # one that falls into it comes too late: the exit code stands
+        try:  # nothing is called before it, or one could fall between
             EndedBy.ignore()
+        except KeyboardInterrupt:
+            pass  # it comes too late: the exit code stands
