@@ -361,10 +361,14 @@ class LineFamily(ChartFamily):
         if len(x) > MOST_IN_NUMPY or compiling_pays() or not self.uncompiled:
             return None
         with instead_of_compiling():
-            rates = self.rates(x, y)
-            if np.any(undamped(rates.trace, self.size)):
-                return None
-            found = self.step_halving(rates)
+            return self.stepped(x, y)
+
+    def stepped(self, x: Array, y: Array) -> Pixels | None:
+        """Points (x, y) by ``step_halving``; None where one is undamped, or the shortest steps do not tell."""
+        rates = self.rates(x, y)
+        if np.any(undamped(rates.trace, self.size)):
+            return None
+        found = self.step_halving(rates)
         return found if np.isfinite(found.radius).all() else None
 
     @property

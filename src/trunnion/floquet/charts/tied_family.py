@@ -17,7 +17,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations.first_order import FEWEST_SAMPLES
 from trunnion.floquet.charts.chart_families import MOST_IN_NUMPY, LineFamily, Sampler, point_by_point
-from trunnion.floquet.charts.chart_pixels import Pixels, undamped
+from trunnion.floquet.charts.chart_pixels import Pixels
 from trunnion.floquet.charts.cost_model import pixel_cost, step_cost
 from trunnion.floquet.charts.leading_group import distinguished
 from trunnion.floquet.charts.multiplier_interpolation import corners_of, leading_patches
@@ -88,21 +88,12 @@ class TiedLineFamily(LineFamily):
         most = min(MOST_IN_NUMPY, MOST_NUMBERS // (FEWEST_SAMPLES * self.size**2))
         if self.set_aside or len(x) > most:
             return None
-        rates = self.rates(x, y)
-        if np.any(undamped(rates.trace, self.size)):
-            return None
-        found = self.step_halving(rates)
-        return found if np.isfinite(found.radius).all() else None
+        return self.stepped(x, y)
 
     @property
     def uncompiled(self) -> bool:
         """Whether it may be stepped in NumPy: there is nothing to compile for it."""
         return not self.set_aside
-
-    @property
-    def needs_stages(self) -> bool:
-        """No kernel takes its equations."""
-        return False
 
     def over_whole_periods(self) -> LineFamily:
         """It never takes half of one."""
