@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.design.assessment.assess import OF_RESPONSE, of_line, of_response
-from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse, cases_of
+from trunnion.design.assessment.assessment_input import WHOLE, AssessmentInput, LoadCaseResponse, cases_of
 from trunnion.design.assessment.check import Check
 from trunnion.design.assessment.fatigue_life import NAME as FATIGUE
 from trunnion.design.assessment.fatigue_life import fatigue_life
@@ -31,6 +31,9 @@ from trunnion.design.sensitivity.responses import SpectrumSlope, spectrum_slopes
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import ComputationError, InputError
 from trunnion.response.orders.response import response_of_spectrum
+
+UNNAMED = replace(WHOLE, named=False)
+"""Of lines beside the one that is judged, only numbers are asked for."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +144,7 @@ class _Values:
             subject, own = _of(self.subject, case, line)
             own = replace(own, low=speed, high=speed, given=(speed,), known=around.response(own.assembly, share))
             one_case = replace(subject, cases=(own,))
-            self._seen[key] = _read((*of_response(one_case, own), *separation(one_case, own)))
+            self._seen[key] = _read(self._by_case(one_case))
         return self._seen[key].get(check.name, np.full(2, np.nan))
 
     def _slopes_at(self, case: LoadCaseResponse, speed: float) -> tuple[dict[str, SpectrumSlope | None], float]:
@@ -230,7 +233,7 @@ def _under_load(case: LoadCaseResponse, one: Direction) -> Direction:
 
 
 def _of(subject: AssessmentInput, case: LoadCaseResponse, line: Driveline) -> tuple[AssessmentInput, LoadCaseResponse]:
-    changed = replace(subject, line=line, cases=cases_of(line, subject.low, subject.high))
+    changed = replace(subject, line=line, cases=cases_of(line, subject.low, subject.high, UNNAMED))
     return changed, replace(next(c for c in changed.cases if c.name == case.name), rough=case.rough)
 
 
