@@ -37,10 +37,11 @@ def app(
 
 
 def _text(file: str | None) -> str:
-    """The driveline file to begin with, checked."""
+    """The driveline file to begin with, checked, with the tables that it names."""
+    from trunnion.driveline.files import dumps_alone
     from trunnion.driveline.starter import starter
 
     if file is None:
         return starter(STARTER)
     line = read_line(file)
-    return Path(file).read_text(encoding="utf-8") if Path(file).is_file() else tn.dumps(line)
+    return dumps_alone(line, Path(file)) if Path(file).is_file() else tn.dumps(line)

@@ -41,6 +41,21 @@ class TableKind:
     first_line: str
 
 
+UNKNOWN_FILE = "names a file that is not known here"
+
+
+def refuse_name(value: object, key: str, reader: str) -> None:
+    """Refuse the name of a table where nothing says which folder it lies in; ``reader`` is what reads one in Python.
+
+    Raises
+    ------
+    InputError : ``value``, of an element's ``key``, is such a name.
+    """
+    if isinstance(value, str) and value.lower().endswith(".csv"):
+        remedy = f"use tn.load for a file beside the description, or {key}=tn.{reader}(path)"
+        raise InputError(UNKNOWN_FILE, value=value, remedy=remedy)
+
+
 def read_numbers(path: str | os.PathLike[str], kind: TableKind) -> list[tuple[str, dict[str, float]]]:
     """The numbers of every row in SI units by column, each with its place for messages.
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field
 
-from trunnion.driveline.csv_table import TableKind, read_numbers
+from trunnion.driveline.csv_table import TableKind, read_numbers, refuse_name
 from trunnion.driveline.quantities import SPEED, TORQUE, Speed, TableList, Torque, shown
 from trunnion.driveline.record import Record, listed
 from trunnion.errors import InputError
@@ -57,9 +57,7 @@ _READ = listed(TorquePoint, "point", f"write {POINTS}, or the name of a CSV file
 
 
 def _points(value: object) -> tuple[TorquePoint, ...]:
-    if isinstance(value, str) and value.lower().endswith(".csv"):
-        remedy = "use tn.load for a file beside the description, or curve=tn.read_curve(path)"
-        raise InputError("names a file that is not known here", value=value, remedy=remedy)
+    refuse_name(value, "curve", "read_curve")
     made = _READ(value)
     if len(made) < 2:
         raise InputError("must have two points at least", value=len(made), remedy=f"write {POINTS}")

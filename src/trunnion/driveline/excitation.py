@@ -11,6 +11,7 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import BeforeValidator, model_validator
 
+from trunnion.driveline.csv_table import refuse_name
 from trunnion.driveline.quantities import (
     SPEED,
     TORQUE,
@@ -202,9 +203,7 @@ def harmonics(key: str, none: bool) -> Callable[[object], tuple[Excitation, ...]
     read = listed(Excitation, "harmonic torque", key=key, none=none)
 
     def tables(value: object) -> tuple[Excitation, ...]:
-        if isinstance(value, str) and value.lower().endswith(".csv"):
-            remedy = f"use tn.load for a file beside the description, or {key}=tn.read_excitation(path)"
-            raise InputError("names a file that is not known here", value=value, remedy=remedy)
+        refuse_name(value, key, "read_excitation")
         return read(value)
 
     return tables

@@ -217,8 +217,21 @@ def dump(line: Driveline, path: str | os.PathLike[str], *, comments_of: str | os
         raise InputError(error.problem, key=str(path), remedy=remedy) from None
 
 
-def _dumps_like(line: Driveline, file: Path, folder: Path) -> str:
-    """``line`` in the text of a file that it came from, to be read in ``folder``."""
+def dumps_alone(line: Driveline, file: Path) -> str:
+    """``line`` in the text of the file that it came from, as text that needs nothing beside it: tables and components
+    that the file names are written out."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputRemark)
+        try:
+            if loads(text := read_text(file)) == line:
+                return text
+        except InputError:
+            pass  # what it names is not found from elsewhere
+    return _dumps_like(line, file, None)
+
+
+def _dumps_like(line: Driveline, file: Path, folder: Path | None) -> str:
+    """``line`` in the text of a file that it came from, to be read in ``folder``, or anywhere."""
     from trunnion.driveline.rewriting import rewritten
     from trunnion.driveline.texts_kept import quantities_kept, texts_kept
 
@@ -227,8 +240,9 @@ def _dumps_like(line: Driveline, file: Path, folder: Path) -> str:
     old = tomllib.loads(before)
     old["element"] = [expand(table) for table in old.get("element", [])]
     data = quantities_kept(texts_kept(tomllib.loads(plain), old, line), old, texts=True)
-    beside = file.parent.resolve() == folder.resolve()  # elsewhere the file of a component or table may not be found
-    around = Surroundings(folder, False)
+    around = None if folder is None else Surroundings(folder, False)
+    # Elsewhere the file of a component or table may not be found.
+    beside = folder is not None and file.parent.resolve() == folder.resolve()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputRemark)
         for table, one, element in zip(data["element"], old["element"], line.as_stated.elements, strict=False):

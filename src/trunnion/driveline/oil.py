@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.csv_table import TableKind, read_numbers
+from trunnion.driveline.csv_table import TableKind, read_numbers, refuse_name
 from trunnion.driveline.quantities import (
     FREQUENCY,
     RATIO,
@@ -99,9 +99,7 @@ _READ = listed(OilPoint, "point", f"write {POINTS}, or the name of a CSV file", 
 
 
 def _points(value: object) -> tuple[OilPoint, ...]:
-    if isinstance(value, str) and value.lower().endswith(".csv"):
-        remedy = "use tn.load for a file beside the description, or oil=tn.read_oil(path)"
-        raise InputError("names a file that is not known here", value=value, remedy=remedy)
+    refuse_name(value, "oil", "read_oil")
     made = _READ(value)
     if len({one.temperature is None for one in made}) > 1:
         raise InputError("has points with and without a temperature", remedy="write it at all of them, or at none")

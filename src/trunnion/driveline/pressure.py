@@ -11,7 +11,7 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import BeforeValidator, model_validator
 
-from trunnion.driveline.csv_table import TableKind, read_numbers
+from trunnion.driveline.csv_table import TableKind, read_numbers, refuse_name
 from trunnion.driveline.quantities import (
     ANGLE,
     PRESSURE,
@@ -89,9 +89,7 @@ def curves(key: str) -> Callable[[object], tuple[PressureCurve, ...]]:
     read = listed(PressureCurve, "pressure curve", key=key, none=False)
 
     def one_or_more(value: object) -> tuple[PressureCurve, ...]:
-        if isinstance(value, str) and value.lower().endswith(".csv"):
-            remedy = f"use tn.load for a file beside the description, or {key}=tn.read_pressure(path)"
-            raise InputError("names a file that is not known here", value=value, remedy=remedy)
+        refuse_name(value, key, "read_pressure")
         return read([value] if isinstance(value, PressureCurve) else value)
 
     return one_or_more

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
-from trunnion.driveline.csv_table import TableKind, read_numbers
+from trunnion.driveline.csv_table import TableKind, read_numbers, refuse_name
 from trunnion.driveline.elements import not_negative, positive
 from trunnion.driveline.parts import Dragged, Geared, Heavy, Numbers, Part
 from trunnion.driveline.quantities import (
@@ -96,9 +96,7 @@ _READ = listed(ConverterPoint, "point", f"write {POINTS}, or the name of a CSV f
 
 
 def _points(value: object) -> tuple[ConverterPoint, ...]:
-    if isinstance(value, str) and value.lower().endswith(".csv"):
-        remedy = "use tn.load for a file beside the description, or curves=tn.read_converter(path)"
-        raise InputError("names a file that is not known here", value=value, remedy=remedy)
+    refuse_name(value, "curves", "read_converter")
     made = _READ(value)
     if len(made) < 3:
         raise InputError("must have three points at least", value=len(made), remedy=f"write {POINTS}")

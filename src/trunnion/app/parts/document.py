@@ -36,6 +36,7 @@ from trunnion.app.parts.form import (
     names_of,
 )
 from trunnion.driveline.component_files import find, with_sheet
+from trunnion.driveline.csv_table import UNKNOWN_FILE
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.rewriting import Rewritten, rewritten
@@ -286,7 +287,10 @@ class Document:
             raise InputError(problem, key="file", remedy="give a driveline file")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", InputRemark)
-            loads(text)
+            try:
+                loads(text)
+            except InputError as error:
+                raise error.each(_from_elsewhere) from None
         data = _with_sheets(tomllib.loads(text))
         keys = self._new_keys(data)
         self._take(data, keys, _OpenedFile(text, keys))
@@ -379,6 +383,13 @@ class Document:
             else:
                 self.problems, self._accepted = (), self._history[self._now]
                 self.toml = text  # as typed: what is stated stays so, be it a default
+
+
+def _from_elsewhere(error: InputError) -> InputError:
+    """A browser hands over the file alone, without the folder that it comes from."""
+    if error.problem != UNKNOWN_FILE:
+        return error
+    return error.but(remedy="begin with the file, trunnion app FILE: tables beside it are read too")
 
 
 def _made(kind: str) -> dict[str, Any]:
