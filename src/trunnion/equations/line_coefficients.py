@@ -133,6 +133,13 @@ class LineCoefficients:
     oils: tuple[OilLink, ...] = ()
 
     @property
+    def fed(self) -> bool:
+        """Whether anything may feed energy into small motions in any case: negative damping, a torque that grows with
+        the speed, a converter. A line of which nothing varies grows by nothing else."""
+        negative = any(bool(np.any(part < 0)) for part in (self.damping, self.viscous, self.quadratic))
+        return bool(self.across) or negative
+
+    @property
     def straight(self) -> LineCoefficients:
         """The same without any bend."""
         return replace(self, joints=tuple(law.straight() for law in self.joints))

@@ -32,7 +32,7 @@ from trunnion.floquet.tongues.boundaries import MOST
 from trunnion.floquet.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
 from trunnion.floquet.tongues.rows import TongueRow, unknown_row, unstable_intervals
 from trunnion.floquet.tongues.rows_by_collisions import SAMPLED_WORDS, sampled_rows
-from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
+from trunnion.floquet.tongues.tongues import PASSIVE, PATCH_TOLERANCE, task_of
 from trunnion.floquet.tongues.windows import StableWindows, stable_windows
 from trunnion.results.chart import StabilityChart, require_pixels
 from trunnion.results.finding import Finding, Gravity
@@ -175,7 +175,12 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
 
 def _region(task: Task, speeds: int, tolerance: float, workers: int, report_progress: Progress) -> Region:
     """The box to search; few rows of a long line cost less than one patch of its matrices."""
-    if not task.family.analytic or 2 * task.family.size > MOST and speeds * NODES * PIECES < NODES**2:
+    if (
+        task.family.passive
+        or not task.family.analytic
+        or 2 * task.family.size > MOST
+        and speeds * NODES * PIECES < NODES**2
+    ):
         return unpatched(task.family, task.x.values, task.y.values, workers)
     return patched(task.family, task.x.values, task.y.values, tolerance, workers, report_progress)
 
@@ -239,7 +244,7 @@ def _result(
     notes = tuple(Finding(Gravity.NOTE, f"{r[0].upper()}{r[1:]}") for r in task.remarks if r not in known)
     return StableLimit(
         parameter=task.x.label, unit=task.x.unit, speed=speed, limit=limit, kind=kind, unstable=unstable,
-        unknown=unknown, low=low, high=high, complete=region.by_coefficients and not region.uncovered,
+        unknown=unknown, low=low, high=high, complete=region.complete,
         search=_search_words(region), others=others[0], others_search=others[1], whole=whole, findings=(*said, *notes),
         speed_unit=speed_unit(assembly.line),
     )  # fmt: skip
@@ -253,6 +258,8 @@ def _begins_unknown(unstable: Array, unknown: Array) -> bool:
 def _search_words(region: Region) -> str:
     if not region.family.analytic:
         return f"stability about the line's own motion: values of the parameter {SAMPLED_WORDS}"
+    if region.family.passive:
+        return PASSIVE
     if not region.by_coefficients:
         few = "more than three unknowns have no boundary functions that could be searched completely"
         return f"stability sampled along the parameter, edges solved for: {few}, so narrow ranges may be missing"

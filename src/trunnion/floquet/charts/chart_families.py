@@ -20,6 +20,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LARGEST_DENSE, LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.steady_base import has_joint_angles
 from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.axes import ChartAxis
 from trunnion.floquet.charts.chart_pixels import Pixels, undamped
@@ -74,6 +75,11 @@ class ChartFamily(Protocol):
     def analytic(self) -> bool:
         """Whether what decides stability is an analytic function of both parameters."""
         return True
+
+    @property
+    def passive(self) -> bool:
+        """Whether it is known that nothing grows anywhere on the axes."""
+        return False
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices (points, m, m), their errors and ∫ tr(M⁻¹C) dτ (points,)."""
@@ -182,6 +188,14 @@ class LineFamily(ChartFamily):
         """Stations with loads that depend on the speed anywhere on the axes."""
         box = Box.around(self.x.values, self.y.values)
         return loaded_by_speed(self.assembly.topology, self._coefficients(*spread(box, 5)))
+
+    @cached_property
+    def passive(self) -> bool:
+        """Whether at points all over the axes nothing varies with the angle and nothing feeds energy in."""
+        table = self.table(*spread(Box.around(self.x.values, self.y.values)))
+        co = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
+        varies = bool(co.waves) or has_joint_angles(self.assembly, table)
+        return not (varies or co.fed or np.any(co.stiffness < 0))
 
     @cached_property
     def program(self) -> ChainProgram:

@@ -49,6 +49,11 @@ class SteadyStateFamily(LineFamily):
         return False
 
     @property
+    def passive(self) -> bool:
+        """No: about motions of its own a line varies."""
+        return False
+
+    @property
     def set_aside(self) -> int:
         """None: what comes back exactly is left out of every point already."""
         return 0

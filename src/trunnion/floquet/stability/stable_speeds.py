@@ -54,7 +54,7 @@ def _straight(assembly: Assembly, co: LineCoefficients) -> Codes:
     """Only what feeds energy in makes a straight line unstable: negative damping, a drive whose torque grows with the
     speed."""
     stable = np.full(len(co.speed), Verdict.STABLE, dtype=np.int8)
-    if not co.across and not any(np.any(part < 0) for part in (co.damping, co.viscous, co.quadratic)):
+    if not co.fed:
         return stable
     if co.loss.any():
         return np.full_like(stable, Verdict.FAILED)

@@ -77,6 +77,11 @@ class Region:
         return 2 * self.family.size <= MOST
 
     @property
+    def complete(self) -> bool:
+        """Whether rows are searched for every zero, from end to end, or nothing can grow."""
+        return self.family.passive or self.by_coefficients and not self.uncovered
+
+    @property
     def uncovered(self) -> int:
         """Boxes that did not converge as patches."""
         return len(self.function.direct)
@@ -239,6 +244,8 @@ def patched(
     Of a stiff line by its largest multipliers alone where those stand apart and cost less: none of the others is ever
     the first to leave the unit circle.
     """
+    if family.passive:
+        return unpatched(family, x, y, threads)
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box = Box.around(u, v)
     if (few := family.leading(box, LOOKED_AT, GROUP * tolerance / 4, threads, report_progress)) is not None:

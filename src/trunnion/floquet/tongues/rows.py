@@ -92,19 +92,25 @@ class TongueRow:
 def unstable_intervals(region: Region, v: Array) -> list[TongueRow]:
     """The unstable intervals of rows ``v``, each found from end to end."""
     v = np.atleast_1d(np.asarray(v, dtype=float))
+    if region.family.passive:
+        return [stable_row(float(own)) for own in v]
     found = (_zeros(piece) if region.by_coefficients else _sampled(region, piece) for piece in region.pieces(v))
     row, at, close_row, close = (np.concatenate(part) for part in zip(*chain.from_iterable(found), strict=True))
     return settled(region, v, (row, at), (np.zeros(0, dtype=np.intp), np.zeros(0)), (close_row, close))
 
 
+def stable_row(v: float) -> TongueRow:
+    """A row on which nothing grows."""
+    none = np.zeros(0)
+    return TongueRow(
+        v=v, low=none, high=none, inside=none, kind=none.astype(np.int8), clipped=np.zeros((0, 2), bool),
+        unknown=np.zeros((0, 2)), by=none.astype(np.int8), of=(),
+    )  # fmt: skip
+
+
 def unknown_row(region: Region, v: float) -> TongueRow:
     """A row of which nothing is known."""
-    none = np.zeros(0)
-    whole = np.array([[region.box.u0, region.box.u1]])
-    return TongueRow(
-        v=v, low=none, high=none, inside=none, kind=none.astype(np.int8), clipped=np.zeros((0, 2), bool), unknown=whole,
-        by=none.astype(np.int8), of=(),
-    )  # fmt: skip
+    return replace(stable_row(v), unknown=np.array([[region.box.u0, region.box.u1]]))
 
 
 def looked_at(region: Region, rows: list[TongueRow], stretches: list[Array]) -> list[TongueRow]:

@@ -81,6 +81,8 @@ class RowFamily:
     def met(self, y: float) -> tuple[Array, Array]:
         """Speeds (collisions,) of the row at ``y`` at which two exponents meet that may open, and growth rates
         there."""
+        if self.family.passive:
+            return np.zeros(0), np.zeros(0)
         span = self.span(y)
         speed = np.unique(exponent_collisions(span, span.start, span.high, self._swing(y)).speed)
         return speed, self.judged(span, y, speed).growth_rate if len(speed) else np.zeros(0)

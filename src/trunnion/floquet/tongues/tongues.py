@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -44,6 +45,10 @@ Said = Callable[[str, list[BoundaryTrace]], str]
 
 ROWS = 65
 PATCH_TOLERANCE = 1e-11
+PASSIVE = (
+    "nothing in the line varies with the angle and nothing feeds energy into it, looked at all over the box, its edges "
+    "and corners included: nothing grows"
+)
 FASTEST = 5
 """Rows of a tongue that grow fastest in their middle, on which its largest growth rate is looked for."""
 
@@ -152,7 +157,7 @@ def described(task: Task, region: Region, search: Search, regions: Regions, said
         x_range=(float(task.x.values[0]), float(task.x.values[-1])),
         y_range=(float(task.y.values[0]), float(task.y.values[-1])), rate_unit="1/s" if task.line is not None else "1",
         rows=len(searched), row_step=apart,
-        complete=region.by_coefficients and not region.uncovered and not undecided and not open_ends,
+        complete=region.complete and not undecided and not open_ends,
         search=first + _faint_words(shaped) + _unknown_words(undecided, across, up) + _open_words(open_ends, up),
         unknown=tuple(sorted((*undecided, *open_ends), key=lambda place: (place.y, place.x))), line=task.line,
         remarks=task.remarks, find=find, unit=unit,
@@ -237,6 +242,8 @@ def _open_words(open_ends: tuple[Unknown, ...], up: QuantityAxis) -> str:
 def _search(region: Region) -> tuple[Search, Said]:
     """How rows are searched, and what there is to say of it when tongues are known."""
     alone = ""
+    if region.family.passive:
+        return partial(unstable_intervals, region), lambda apart, traces: PASSIVE
     if isinstance(region.family, SteadyStateFamily):
         rows = rows_by_collisions(region, region.family) if region.family.x.is_speed else sampled_rows(region)
         words = WORDS if region.family.x.is_speed else SAMPLED_WORDS

@@ -41,6 +41,7 @@ from trunnion.floquet.tongues.rows_by_collisions import (
 )
 from trunnion.floquet.tongues.shapes import lost
 from trunnion.floquet.tongues.tongues import (
+    PASSIVE,
     PATCH_TOLERANCE,
     ROWS,
     Progress,
@@ -142,6 +143,9 @@ def _completely(task: Task, family: LineFamily) -> bool:
 
 def _ways(task: Task, family: LineFamily, levels: Array, report_progress: Callable[[float], None]) -> _SearchAxes:
     threads = os.cpu_count() or 1
+    if family.passive:
+        region = unpatched(family, task.x.values, task.y.values, threads)
+        return _SearchAxes(region, partial(unstable_intervals, region), lambda u: [], lambda apart, columns: PASSIVE)
     if not _completely(task, family):
         region = unpatched(family, task.x.values, task.y.values, threads)
         finer = np.interp(np.arange(FINER * (len(levels) - 1) + 1) / FINER, np.arange(len(levels)), levels)

@@ -103,6 +103,8 @@ class StableWindows(Result):
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
             begin = f"{self._value(low)}{_why(below, self.words)}"
             parts.append(f"from {begin} to {self._value(high)}{_why(above, self.words)}")
+        if not len(self.confirmed):
+            return f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}, as nothing can grow."
         how = "confirmed" if self.complete else "checked"
         return (
             f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}; "
