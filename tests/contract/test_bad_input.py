@@ -646,6 +646,29 @@ PYTHON = [
         "Engine.mean_indicated_pressure = '900 bar': has 900 bar, more than the",
         "give the peak_pressure",
     ),
+    *(
+        (
+            lambda ratio=ratio: indicated(compression_ratio=ratio),
+            f"Engine.compression_ratio = {ratio}: leaves no clearance volume",
+            "14",
+        )
+        for ratio in (1, 0.5, 0, -14)
+    ),
+    (lambda: indicated(compression_ratio=1e6), "Engine.compression_ratio = 1e+06: is more than 200", "14"),
+    *(
+        (
+            lambda key=key, exponent=exponent: indicated(**{key: exponent}),
+            f"Engine.{key} = {exponent}: must be positive, and at most 3",
+            "1.35",
+        )
+        for key in ("polytropic_exponent", "expansion_exponent")
+        for exponent in (0, -1, 500)
+    ),
+    (
+        lambda: engine(pressures=[2e5] * 720, compression_ratio=14, charge_pressure=1e5, polytropic_exponent=500),
+        "Engine.polytropic_exponent = 500: must be positive, and at most 3",
+        "1.35",
+    ),
     (
         lambda: tn.Schedule(name="open", speed=[50, 90], factors={"fan": [0.2, 0]}),
         "schedule open.factors.fan = 0: must be positive",

@@ -411,3 +411,25 @@ def test_what_a_turn_leaves_out_of_its_throws_is_said_once():
     said = " ".join(str(one) for one in tn.kinetostatics(tn.Driveline(parts)).findings)
     assert "engine.throw *.drive_share are left out: the first element drives alone" in said
     assert "engine.throw *.excitation, engine.throw *.firing_angles are left out" in said and "throw 2" not in said
+
+
+def test_odd_numbers_of_a_cylinder_are_said():
+    """A bore in mm read as m, a curve with a hole, and one whose angles stand half a turn off and that brakes."""
+    with pytest.warns(InputRemark, match=r"bore = 200: is 200 m, more than any engine has"):
+        engine(pressure=[curve(60e5)], **CYLINDER | {"bore": 200.0})
+    full = curve(60e5, points=181)
+    kept = [i for i, angle in enumerate(full.angles) if not np.deg2rad(101) < angle < np.deg2rad(199)]
+    holed = tn.PressureCurve(angles=[full.angles[i] for i in kept], pressures=[full.pressures[i] for i in kept])
+    with pytest.warns(InputRemark, match=r"has no point from 100 deg to 200 deg; it is taken as linear"):
+        engine(pressure=[holed], **CYLINDER)
+    mirrored = tn.PressureCurve(angles=full.angles, pressures=full.pressures[::-1])
+    work = -np.trapezoid(
+        np.interp(np.array(full.angles), full.angles, full.pressures[::-1]), piston(np.array(full.angles))
+    )
+    mean = work * np.pi / 4 * BORE**2 / FOUR_STROKE
+    assert mean < 0
+    with pytest.warns(InputRemark, match="brakes: its mean torque over the cycle is -") as said:
+        engine(pressure=[mirrored], **CYLINDER)
+    (one,) = said
+    assert float(str(one.message).split("cycle is ")[1].split(" N m")[0]) == pytest.approx(mean, rel=0.01)
+    engine(pressure=[mirrored], **CYLINDER, drive_share=None)  # a compressor takes it

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from trunnion.driveline.quantities import ANGLE, PRESSURE, RATIO, SPEED, QuantityKind, parse
+from trunnion.driveline.quantities import ANGLE, PRESSURE, RATIO, SPEED, QuantityKind, parse, with_article
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.reading import regular_bytes
@@ -114,7 +114,8 @@ def _columns(source: str, head: Sequence[str], kind: TableKind) -> dict[str, tup
         if not unit and kind.columns[name] is not RATIO:
             raise InputError("has no unit", element=source, key=name, remedy=remedy)
         if unit and not _is_unit(unit, kind.columns[name]):
-            raise InputError(f"has no unit of a {kind.columns[name].name}", element=source, key=name, remedy=remedy)
+            problem = f"has no unit of {with_article(kind.columns[name].name)}"
+            raise InputError(problem, element=source, key=name, remedy=remedy)
         if name in found:
             raise InputError("stands twice", element=source, key=name, remedy="leave one of the columns out")
         found[name] = i, unit

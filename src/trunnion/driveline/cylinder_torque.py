@@ -98,6 +98,11 @@ def gas(engine: Cylinders) -> tuple[Excitation, ...]:
     return _over_load(engine, found)
 
 
+def mean_torque(engine: Cylinders, curve: PressureCurve) -> float:
+    """Mean torque [N m] of a cylinder under a pressure curve, positive where it drives."""
+    return _torque(engine, curve)[0]
+
+
 @lru_cache(maxsize=64)
 def compression(engine: Cylinders) -> tuple[Excitation, ...]:
     """Gas torques of a cylinder that does not fire."""

@@ -14,6 +14,7 @@ from trunnion.driveline.composite import Composite
 from trunnion.driveline.crank_throw import FORMULAS, CrankThrow, throw_stiffness
 from trunnion.driveline.cylinder_torque import compression, cycles, for_several, gas, masses
 from trunnion.driveline.elements import Disk, Doubt, Element, not_negative, positive
+from trunnion.driveline.engine_doubts import doubts_of
 from trunnion.driveline.excitation import Excitation, harmonics
 from trunnion.driveline.pressure import PressureCurve, curves
 from trunnion.driveline.quantities import (
@@ -53,8 +54,8 @@ CLOSED = 0.02
 """Share of its highest pressure by which the two ends of a curve may differ."""
 LOWEST_PEAK, HIGHEST_PEAK = 1e5, 1e8
 """Pressures [Pa] between which that of a running cylinder reaches; beyond them its unit is wrong."""
-LOWEST_MEAN, HIGHEST_MEAN = 2e4, 8e6
-"""Mean indicated pressures [Pa] beyond which the unit is doubted."""
+HIGHEST_RATIO, HIGHEST_EXPONENT = 200.0, 3.0
+"""Of volumes, and of p Vⁿ = const; a gas that neither takes nor gives heat has 1.67 at most."""
 DAMPING_RULES = {"mendes": 0.035}
 """Loss factor of a crank by who used it: Mendes, Meirelles and Zampieri (2008) for one six-cylinder diesel of 105 mm
 bore, as openTorsion's example of that article has it; the article itself was not read."""
@@ -453,13 +454,25 @@ class Engine(Composite):
             missing = next(key for key in numbers if key not in given)
             raise InputError(f"is needed with {given[0]}", key=missing, remedy=f"write {', '.join(numbers)}")
         self._needs("compression_ratio", "bore", "stroke", "rod_length")
+        self._check_gas()
         self._check_cycles()
         self._needs("compression", "bore", "stroke", "rod_length")
-        if self.compression_ratio is not None and not self.compression_ratio > 1:
+
+    def _check_gas(self) -> None:
+        """Refuse a ratio of volumes and exponents that no gas has, before anything is computed with them."""
+        ratio = self.compression_ratio
+        if ratio is not None and not ratio > 1:
             problem = "leaves no clearance volume, which is that of the stroke over compression_ratio - 1"
-            remedy = "write compression_ratio = 14, say"
-            raise InputError(problem, key="compression_ratio", value=self.compression_ratio, remedy=remedy)
-        positive(self, "polytropic_exponent")
+            raise InputError(problem, key="compression_ratio", value=ratio, remedy="write compression_ratio = 14, say")
+        if ratio is not None and ratio > HIGHEST_RATIO:
+            problem = f"is more than {HIGHEST_RATIO:g}, which no cylinder has"
+            remedy = "write the largest volume over the smallest, 14 say"
+            raise InputError(problem, key="compression_ratio", value=ratio, remedy=remedy)
+        for key in ("polytropic_exponent", "expansion_exponent"):
+            exponent = getattr(self, key)
+            if exponent is not None and not 0 < exponent <= HIGHEST_EXPONENT:
+                problem = f"must be positive, and at most {HIGHEST_EXPONENT:g}"
+                raise InputError(problem, key=key, value=exponent, remedy="write 1.35, say: n of p V^n = const")
 
     def _check_cycles(self) -> None:
         """Refuse mean indicated pressures that no cycle has."""
@@ -472,7 +485,6 @@ class Engine(Composite):
             if len(values) > 1 and len(values) != len(means):
                 problem = f"must be one for all or {len(means)}, one for each mean_indicated_pressure"
                 raise InputError(problem, key=key, value=list(values), remedy="add those that are missing")
-        positive(self, "expansion_exponent")
         if not means:
             for key in ("peak_pressure", "expansion_exponent"):
                 self._needs(key, "mean_indicated_pressure")
@@ -503,20 +515,7 @@ class Engine(Composite):
             raise InputError(f"is needed with {key}", key=missing, remedy=f"write {', '.join(needed)}")
 
     def doubts(self) -> Iterator[Doubt]:
-        means = self.mean_indicated_pressure
-        if means and not LOWEST_MEAN <= min(means) <= max(means) <= HIGHEST_MEAN:
-            odd = min(means) if min(means) < LOWEST_MEAN else max(means)
-            yield ("mean_indicated_pressure", f"is {_bar(odd)}", "check its unit: Pa read as bar, or bar as Pa, say")
-        if self.bank_angle is None:
-            return
-        for a, b in self.on_throws:
-            apart = self.firing_angles[b - 1] - self.firing_angles[a - 1]
-            off = min(abs((apart - side * self.bank_angle + pi) % (2 * pi) - pi) for side in (1, -1))
-            if off > SAME_ANGLE:
-                problem = f"does not fit the firing order: cylinders {a} and {b} share a throw and fire"
-                problem += f" {apart % (2 * pi) / DEGREE:.6g} deg apart"
-                yield ("bank_angle", problem, "check the order, unless their pins are split")
-                return
+        yield from doubts_of(self)
 
     @property
     def cycle(self) -> float:

@@ -251,7 +251,7 @@ def size_by_pint(unit: str, kind: QuantityKind) -> float:
         return float(registry.convert(1.0, given, needed))
     if kind is RATIO:
         raise InputError("must have no unit", remedy=_advice(kind))
-    problem = f"{unit} is not the unit of {_article(kind.name)} ({kind.unit})"
+    problem = f"{unit} is not the unit of {with_article(kind.name)} ({kind.unit})"
     remedy = _advice(kind)
     # torque for stiffness, 1/s for a speed: the commonest slip, and only the angle tells
     if dimensions.pop("[angle]", 0) != wanted.pop("[angle]", 0) and dimensions == wanted:
@@ -285,10 +285,11 @@ def _finite(number: float, value: object, kind: QuantityKind) -> float:
 def _advice(kind: QuantityKind) -> str:
     if kind is RATIO:
         return f"write a plain number such as {kind.example}"
-    return f'write {_article(kind.name)} such as "{kind.example}"'
+    return f'write {with_article(kind.name)} such as "{kind.example}"'
 
 
-def _article(noun: str) -> str:
+def with_article(noun: str) -> str:
+    """ "a torque", "an angle"."""
     return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
