@@ -90,8 +90,8 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
             corner = shown(element.lag_frequency, FREQUENCY, digits=4)
             yield (
                 LAG,
-                f"{name}: its torque lags above {corner}, as forced responses of straight lines and transients have "
-                "it; elsewhere its slope is taken as quasi-static, which holds well below that",
+                f"{name}: its torque lags above {corner}, as forced responses, modes and stability of straight lines "
+                "and transients have it; elsewhere its slope is taken as quasi-static, which holds well below that",
             )
 
     for name, element in zip(line.names, line.elements, strict=True):

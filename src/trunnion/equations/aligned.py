@@ -54,6 +54,10 @@ class UnitMasses:
         """y of rotations x (n,) or (n, k)."""
         return np.asarray((x.T * self.root).T if self.root is not None else self.factor.T @ x)
 
+    def of_turning(self, turning: Array) -> Array:
+        """Rows u L⁻ᵀ (k, n), which make of y the rotations that rows u (k, n) make of x."""
+        return np.asarray(turning / self.root if self.root is not None else np.linalg.solve(self.factor, turning.T).T)
+
     def rotations(self, y: Any) -> Any:
         """x of y (n, k)."""
         return y / self.root[:, None] if self.root is not None else np.linalg.solve(self.factor.T, y)

@@ -135,9 +135,12 @@ class LineCoefficients:
     @property
     def fed(self) -> bool:
         """Whether anything may feed energy into small motions in any case: negative damping, a torque that grows with
-        the speed, a converter. A line of which nothing varies grows by nothing else."""
-        negative = any(bool(np.any(part < 0)) for part in (self.damping, self.viscous, self.quadratic))
-        return bool(self.across) or negative
+        the speed and what only a torque that lags makes up for, a converter. A line of which nothing varies grows by
+        nothing else."""
+        slopes = self.viscous.copy()
+        for one in self.lags:  # at high frequencies it damps no more
+            slopes[:, one.station] -= np.maximum(one.slope, 0.0)
+        return bool(self.across) or any(bool(np.any(part < 0)) for part in (self.damping, slopes, self.quadratic))
 
     @property
     def straight(self) -> LineCoefficients:

@@ -92,22 +92,55 @@ def _pairs(damping: Array, stiffness: Array, loss: Array, least: float, able: Pl
     return pairs, shapes
 
 
-def damped_modes(damping: Array, stiffness: Array | Complex, least: float) -> tuple[Complex, Complex]:
+@dataclass(frozen=True)
+class Lagging:
+    """Parts of the damping that lag: at λ each is slope/(1 + λ/corner) on the speed of its station.
+
+    turning (part, n) as of the matrices that it belongs to, slope (part,) [N m s/rad] and corner (part,) [rad/s].
+    """
+
+    turning: Array
+    slope: Array
+    corner: Array
+
+
+def damped_modes(
+    damping: Array, stiffness: Array | Complex, least: float, lagging: Lagging | None = None
+) -> tuple[Complex, Complex]:
     """Eigenvalues of λ² + λC + K with an imaginary part above ``least`` [rad/s], by modulus; their shapes (n, values).
 
-    C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
-    own size, is not an oscillation: ``least`` keeps it out.
+    C and K stand for unit masses; C has the slopes of what is ``lagging``, as if it did not. The pair at 0 of a line
+    that turns freely, which rounding parts by the root of its own size, is not an oscillation: ``least`` keeps it out.
     """
-    values, vectors = _eigenvalues(damping, stiffness)
+    values, vectors = _eigenvalues(damping, stiffness, lagging)
     above = np.flatnonzero(values.imag > least)
     above = above[np.argsort(np.abs(values[above]))]
     return values[above], vectors[:, above]
 
 
-def _eigenvalues(damping: Array, stiffness: Array | Complex) -> tuple[Complex, Complex]:
+def with_lags(damping: Array, stiffness: Array | Complex, lagging: Lagging | None) -> Array | Complex:
+    """A of x′ = A x with the states y, dy/dt and the torque T of each lagging part, dT/dt = corner (slope u·dy/dt − T).
+
+    C, K and u of unit masses.
+    """
     n = len(damping)
-    values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]]))
-    return values.astype(complex), vectors[:n].astype(complex)
+    if lagging is None:
+        return np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness, -damping]])
+    turning, at_once = lagging.turning, (lagging.turning.T * lagging.slope) @ lagging.turning
+    follows = (lagging.corner * lagging.slope)[:, None] * turning
+    none = np.zeros((n, len(turning)))
+    return np.block(
+        [
+            [np.zeros((n, n)), np.eye(n), none],
+            [-stiffness, at_once - damping, -turning.T],
+            [none.T, follows, -np.diag(lagging.corner)],
+        ]
+    )
+
+
+def _eigenvalues(damping: Array, stiffness: Array | Complex, lagging: Lagging | None = None) -> tuple[Complex, Complex]:
+    values, vectors = np.linalg.eig(with_lags(damping, stiffness, lagging))
+    return values.astype(complex), vectors[: len(damping)].astype(complex)
 
 
 def matched(before: Complex, after: Complex) -> tuple[Places, Places]:

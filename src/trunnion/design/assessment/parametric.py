@@ -27,7 +27,7 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
-from trunnion.driveline.machines import Generator
+from trunnion.driveline.machines import ElectricMachine, Generator
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
@@ -92,7 +92,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     if found.ranges:
         if not case.parametric:
             fed = "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
-            why = f"{here}: {_constant_power(case) or fed}"
+            why = f"{here}: {_lag(case, straight) or _constant_power(case) or fed}"
             margin = -np.inf
         else:
             why = here + (_resonance(case, float(speeds[at])) if subject.naming else "")
@@ -154,6 +154,16 @@ def _of_motion(
         f"; about the motion that its joints and loads make it swing in a disturbance {rate(growth)} at "
         f"{subject.shown(speed)}, where it {beside} about the static twist"
     )
+
+
+def _lag(case: LoadCaseResponse, at_once: float) -> str:
+    """Whose torque would damp what grows if it followed the speed ``at_once``, with a decay [1/s] above 0."""
+    parts = case.assembly.line.parts
+    names = [name for name, one in parts if isinstance(one, ElectricMachine) and one.lag_frequency is not None]
+    if not names or not at_once > 0:
+        return ""
+    remedy = "raise corner_frequency, or add damping"
+    return f"the torque of {listed(names)} lags too far behind the speed to damp it: {remedy}"
 
 
 def _constant_power(case: LoadCaseResponse) -> str:

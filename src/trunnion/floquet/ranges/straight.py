@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
+from trunnion.floquet.stability.lagging import lagging_growth, lags_count
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, straight_decay
 from trunnion.floquet.stability.stable_speeds import verdicts_at
 from trunnion.results.verdict import Verdict
@@ -22,9 +23,7 @@ def straight_ranges(span: Span) -> UnstableRanges:
 
     def judge(at: Array) -> StabilityOverSpeed:
         verdict = verdicts_at(span.assembly, at, table=span.table(at))
-        growth = np.array(
-            [-straight_decay(span.assembly, speed, row) for speed, row in zip(at, span.table(at), strict=True)]
-        )
+        growth = _growth(span, at)
         with np.errstate(under="ignore", over="ignore"):
             radius = np.exp(growth * TURN / at)
         return StabilityOverSpeed(at, radius, np.zeros(len(at)), radius.astype(complex), verdict, growth, TURN)
@@ -33,3 +32,11 @@ def straight_ranges(span: Span) -> UnstableRanges:
     if not np.any(verdict == Verdict.UNSTABLE):
         return UnstableRanges(judge(np.unique(speeds[[0, -1]])), (), 0.0, ())
     return UnstableRanges(*closed_in(judge(speeds), judge), 0.0, ())
+
+
+def _growth(span: Span, at: Array) -> Array:
+    """Of the fastest disturbance [1/s] at every speed, torques that lag among what damps it."""
+    co = span.assembly.coefficients(span.table(at), any_frequency=True)
+    if lags_count(span.assembly, co):
+        return lagging_growth(span.assembly, co)
+    return np.array([-straight_decay(span.assembly, speed, row) for speed, row in zip(at, span.table(at), strict=True)])

@@ -37,6 +37,7 @@ from trunnion.floquet.propagation.cost_model import by_modes_of, by_shooting, re
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
+from trunnion.floquet.stability.lagging import lagging_multipliers, lags_count
 from trunnion.floquet.stability.own_speed import RUNS_AWAY, is_of_speed
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
@@ -264,11 +265,23 @@ def stability(
         found = _about_steady_state(assembly, float(table[0, 0]), tolerance)
     else:
         found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)
+        coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
+        if lags_count(assembly, coefficients):
+            found = _with_lags(found, assembly, coefficients)
     if found.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
         found = _speed_told(found, assembly.topology, assembly.coefficients(table))
     return replace(
         found, left_out=(*left_out("stability", assembly.line), *shaken_stages(assembly)),
         unit=speed_unit(assembly.line), dragged=len(assembly.topology.dragged),
+    )  # fmt: skip
+
+
+def _with_lags(found: Stability, assembly: Assembly, coefficients: LineCoefficients) -> Stability:
+    """Of a straight line some of whose torques lag, for which ``found`` takes their slopes as quasi-static."""
+    own = lagging_multipliers(assembly, coefficients, found.period, found.set_aside)
+    return replace(
+        found, multipliers=own.value, multiplier_error=own.error, floquet_modes=own.states, verdict=own.verdict,
+        spectral_radius=own.radius, error_estimate=own.radius_error, resonance=None,
     )  # fmt: skip
 
 

@@ -12,6 +12,7 @@ from trunnion.equations.first_order import first_order, scales
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.steady_base import has_joint_angles
+from trunnion.floquet.stability.lagging import lagging_matrices
 from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.results.verdict import Verdict
 
@@ -52,13 +53,17 @@ def verdicts_at(
 
 def _straight(assembly: Assembly, co: LineCoefficients) -> Codes:
     """Only what feeds energy in makes a straight line unstable: negative damping, a drive whose torque grows with the
-    speed."""
+    speed, also where only the slope of a torque that lags makes up for it."""
     stable = np.full(len(co.speed), Verdict.STABLE, dtype=np.int8)
     if not co.fed:
         return stable
     if co.loss.any():
         return np.full_like(stable, Verdict.FAILED)
-    m = line_matrices(assembly.topology, co, np.zeros(1))
-    values = np.linalg.eigvals(first_order(m, co.speed, *scales(m, co.speed))[:, 0])
+    if co.lags:
+        matrices = np.stack([matrix for _, matrix in lagging_matrices(assembly, co)])
+    else:
+        m = line_matrices(assembly.topology, co, np.zeros(1))
+        matrices = first_order(m, co.speed, *scales(m, co.speed))[:, 0]
+    values = np.linalg.eigvals(matrices)
     grows = values.real.max(axis=1) > GROWS * np.abs(values).max(axis=1)
     return np.where(grows, Verdict.UNSTABLE, stable).astype(np.int8)
