@@ -16,6 +16,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 import trunnion as tn
+from trunnion.results.verdict import Verdict
 
 NEAR, FAR, PINION, WHEEL = 0.5, 2.4, 0.05, 0.1
 STIFF, SOFT, DAMPING = 9e4, 6e4, 0.04
@@ -153,3 +154,19 @@ def test_a_transient_of_the_lag_agrees() -> None:
     carried = expm(differences(power, mean) * found.period / mean)
     wanted = np.sort(np.abs(np.linalg.eigvals(carried)))
     np.testing.assert_allclose(np.sort(np.abs(found.multipliers)), wanted, rtol=1e-5, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "question", [tn.tongues, lambda line, x, y: tn.stability_chart(line, (*x, 8), (*y, 8))], ids=["tongues", "chart"]
+)
+def test_charts_refuse_what_only_a_lagging_torque_decides(question: Callable[..., object]) -> None:
+    axes = ("speed", 60.0, 90.0), ("input shaft.stiffness", 0.9 * STIFF, 1.1 * STIFF)
+    # At constant power the generator drives; the motor makes up for it at once, but not with its lag.
+    at_once, lags = line(40e3, None), line(40e3)
+    assert (
+        tn.stability(at_once, 75.0).verdict is Verdict.STABLE and tn.stability(lags, 75.0).verdict is Verdict.UNSTABLE
+    )
+    question(at_once, *axes)
+    with pytest.raises(tn.InputError, match="motor.corner_frequency: has a torque that lags") as refused:
+        question(lags, *axes)
+    assert "ask stability() at single speeds" in str(refused.value)

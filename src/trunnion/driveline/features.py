@@ -24,7 +24,7 @@ from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
-from trunnion.driveline.machines import KLOSS, ElectricMachine
+from trunnion.driveline.machines import KLOSS, lagging
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
@@ -89,8 +89,7 @@ def _curves(line: Driveline) -> list[str]:
 
 
 def _lags(line: Driveline) -> list[str]:
-    electric = ((name, one) for name, one in line.parts if isinstance(one, ElectricMachine))
-    return [f"lag of {name}" for name, one in electric if one.lag_frequency is not None]
+    return [f"lag of {name}" for name in lagging(line.parts)]
 
 
 def _dragged(line: Driveline) -> list[str]:

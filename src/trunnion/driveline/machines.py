@@ -6,7 +6,7 @@ A machine turns with the shaft it hangs on and has one inertia. Its mean torque 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -439,3 +439,8 @@ class Propeller(Consumer):
         if self.damping_factor is None:
             return super().load_of(number)
         return FlowCurve(self._quadratic(number), number("damping_factor"))
+
+
+def lagging(parts: Iterable[tuple[str, object]]) -> list[str]:
+    """Names of the machines among named ``parts`` whose torque lags behind the speed."""
+    return [name for name, one in parts if isinstance(one, ElectricMachine) and one.lag_frequency is not None]

@@ -27,7 +27,7 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
-from trunnion.driveline.machines import ElectricMachine, Generator
+from trunnion.driveline.machines import Generator, lagging
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
@@ -158,8 +158,7 @@ def _of_motion(
 
 def _lag(case: LoadCaseResponse, at_once: float) -> str:
     """Whose torque would damp what grows if it followed the speed ``at_once``, with a decay [1/s] above 0."""
-    parts = case.assembly.line.parts
-    names = [name for name, one in parts if isinstance(one, ElectricMachine) and one.lag_frequency is not None]
+    names = lagging(case.assembly.line.parts)
     if not names or not at_once > 0:
         return ""
     remedy = "raise corner_frequency, or add damping"
