@@ -315,7 +315,7 @@ def worst(result: Any, unit: str) -> Plain:
     name, at = result.springs[k], Words(unit).speed(float(result.speed[int(peak[:, k].argmax())]))
     of = f" of {limits[k]:.5g} N m allowed ({share[k]:.0%})" if np.isfinite(share[k]) else ""
     looked_at = counted(len(result.speed), "speed")
-    said = f"{name}: {most[k]:.5g} N m{of} at {at}, of {looked_at} looked at, the line as stated"
+    said = f"{name}: {most[k]:.5g} N m, its mean included,{of} at {at}, of {looked_at} looked at, the line as stated"
     return {"picture": orders.torque_by_order(result, spring=name, unit=unit), "said": said}
 
 
@@ -334,7 +334,11 @@ def near(result: Any, unit: str, speed: float) -> list[str]:
     nearest = [max(below, key=lambda one: one.speed)] if below else []
     nearest += [min(above, key=lambda one: one.speed)] if above else []
     words = Words(unit)
-    said = [f"{abs(one.speed / speed - 1):.1%} to {one.speed * words.factor:.4g} {unit}, {one.name}" for one in nearest]
+    said = [
+        f"Instability can begin at {one.speed * words.factor:.4g} {unit}, {100 * abs(one.speed / speed - 1):.2g} % "
+        f"{'below' if one.speed < speed else 'above'}: {one.name}"
+        for one in nearest
+    ]
     return said or ["No region of instability can begin: the line has no angled joint or varying mesh."]
 
 
