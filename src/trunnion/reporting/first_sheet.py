@@ -10,6 +10,7 @@ from dataclasses import replace
 from math import ceil
 
 from trunnion.reporting import submission_tables as tables
+from trunnion.reporting.barred_ranges import barred_on_first_sheet
 from trunnion.reporting.submission_contents import SubmissionContents
 from trunnion.reporting.tables import Table
 from trunnion.results.finding import Finding
@@ -23,7 +24,7 @@ LEAST_DRAWING = 38
 MILLIMETRES = 0.9 * 25.4 / 96
 """Of a pixel that is left over, with a reserve."""
 MOST_FINDINGS = 3
-FEWEST_CHECKS = 4
+FEWEST_CHECKS = 2
 
 
 def first_sheet(
@@ -55,7 +56,10 @@ def _without_lists(contents: SubmissionContents, malfunction: Sequence[str]) -> 
     if malfunction:
         height += _verdict(f"With one cylinder out of work exceeded (section 6): {'; '.join(malfunction)}.")
     block = 31.0 + sum(17.0 * _lines(str(row[1]), 24) + 2.0 for row in tables.particulars(contents).rows)
-    return height + max(block, 31.0 + 18.0 * len(tables.barred(contents).rows))
+    ranges = 31.0 + sum(
+        17.0 * max(_lines(ends, 18), _lines(why, 26)) + 2.0 for ends, why in barred_on_first_sheet(contents)
+    )
+    return height + max(block, ranges)
 
 
 def _verdict(text: str) -> float:

@@ -22,6 +22,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.modes.mass_elastic import HolzerTable
 from trunnion.reporting import submission_tables as tables
 from trunnion.reporting import submission_words as words
+from trunnion.reporting.barred_ranges import barred, barred_on_first_sheet
 from trunnion.reporting.first_sheet import first_sheet
 from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, capital, judged
 from trunnion.reporting.page import HtmlPage, environment
@@ -104,7 +105,7 @@ def _beside_checks(contents: SubmissionContents) -> Iterator[Finding]:
 def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], source: Path | None) -> str:
     seen, made = contents.seen, datetime.now().astimezone()
     grave = [one for one in _beside_checks(contents) if one.gravity is not Gravity.NOTE]
-    malfunction = tables.exceeded_by_malfunction(contents)
+    malfunction = tables.malfunction_on_first_sheet(contents)
     checks, first, sketch_height = first_sheet(contents, malfunction, grave)
     name, digest = fingerprint(seen.line, source)
     facts: dict[str, Any] = {
@@ -141,8 +142,10 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "crossings": tables.crossings(contents),
         "shafts": tables.shafts(contents),
         "misfires": tables.misfires(contents) if contents.misfiring else None,
+        "firing_checks": tables.firing_checks(contents),
         "misfire_checks": tables.misfire_checks(contents),
-        "barred": tables.barred(contents),
+        "barred": barred(contents),
+        "barred_first": barred_on_first_sheet(contents),
         "heats": tables.heats(contents),
         "rules": tables.rules(contents),
         "left_out": contents.left_out,

@@ -98,7 +98,8 @@ class Malfunction:
 class SubmissionContents:
     """Results of the report that is handed in; None or empty where a question does not apply.
 
-    left_out: what was not computed, or in part, and why; unsearched: cylinders among them, which were not put out of
+    normal: checks with all cylinders firing, None where those of the verdict are that; left_out: what was not computed,
+    or in part, and why; unsearched: cylinders among them, which were not put out of
     work; complete: whether every torque of every shaft was searched to the end.
     """
 
@@ -110,9 +111,15 @@ class SubmissionContents:
     firing: tuple[LargestTorque, ...]
     misfiring: tuple[Malfunction, ...]
     cases: tuple[LoadCaseResponse, ...]
+    normal: tuple[Check, ...] | None
     left_out: tuple[str, ...]
     unsearched: tuple[str, ...]
     complete: bool
+
+    @property
+    def firing_checks(self) -> tuple[Check, ...]:
+        """With all cylinders firing; of a line without cylinders those of the verdict."""
+        return self.seen.assessment.checks if self.normal is None else self.normal
 
 
 def gather(
@@ -159,6 +166,7 @@ def gather(
         firing=normal or (),
         misfiring=misfiring,
         cases=cases,
+        normal=_normal(seen, firing),
         left_out=tuple(left_out),
         unsearched=unsearched,
         complete=len(cases) == len(seen.subject.cases) and not any(case.ended_by for case in cases),
@@ -271,6 +279,19 @@ def _all_firing(seen: OverviewAssessment, cases: tuple[LoadCaseResponse, ...]) -
     if not working:
         return tuple(stated)
     return tuple(replace(case, assembly=assemble(case.assembly.line.replace_all(working))) for case in stated)
+
+
+def _normal(seen: OverviewAssessment, firing: tuple[LoadCaseResponse, ...]) -> tuple[Check, ...] | None:
+    """Checks of the response with all cylinders firing, where the verdict is also about cylinders out of work."""
+    asked = seen.line.operation or Operation()
+    silent = any(getattr(one, key, None) is not None for _, one in seen.line.as_stated.parts for key in SILENT)
+    if not firing or not (silent or asked.misfiring or asked.cut_out):
+        return None
+    try:
+        found = worst(check for case in firing for check in of_response(seen.subject, case))
+        return tuple(weighed(found, seen.operation))
+    except OutOfTime:
+        return None
 
 
 def _vibratory(cases: tuple[LoadCaseResponse, ...]) -> tuple[LargestTorque, ...]:

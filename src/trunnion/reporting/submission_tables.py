@@ -30,7 +30,7 @@ from trunnion.errors import InputError
 from trunnion.modes.mass_elastic import HolzerTable, SpringRow, masses, springs
 from trunnion.reporting.submission_contents import ShaftTorque, SubmissionContents
 from trunnion.reporting.tables import Table, four
-from trunnion.results.counts import counted, listed
+from trunnion.results.counts import counted
 from trunnion.results.speeds import order_name
 from trunnion.results.units import range_words
 from trunnion.results.words import HERTZ, Words
@@ -38,6 +38,8 @@ from trunnion.results.words import HERTZ, Words
 EMPTY = "–"
 MILLI = 1e-3
 """Rotation [rad] of the mass that moves most in a Holzer table."""
+FEW = 4
+"""Checks that the sentence about a cylinder out of work names on the first sheet."""
 FIRST_CHECKS = 8
 """Checks on the first page, which is one sheet."""
 MOST_EXCITATIONS = 60
@@ -101,6 +103,8 @@ def particulars(contents: SubmissionContents) -> Table:
     if len(elastic):
         lowest = ", ".join(four(float(one) * HERTZ.factor) for one in elastic[:3])
         rows.append(("lowest undamped modes", f"{lowest} Hz"))
+    if contents.normal is not None:
+        rows.append(("all cylinders firing", _firing(contents.normal)))
     if contents.misfiring or contents.unsearched:
         rows.append(("a cylinder out of work", _malfunction(contents)))
     if contents.left_out:
@@ -117,6 +121,14 @@ def _own_speeds(contents: SubmissionContents) -> str:
     return f", load cases {range_words(words.rounded(min(speeds)), words.rounded(max(speeds)))}"
 
 
+def _firing(checks: tuple[Check, ...]) -> str:
+    """How the checks end with all cylinders firing, where the verdict is also about those out of work."""
+    exceeded = [check.name for check in checks if check.exceeded]
+    if exceeded:
+        return f"exceeded: {exceeded[0] if len(exceeded) == 1 else counted(len(exceeded), 'check')}, section 6"
+    return "not all judged" if any(check.missing for check in checks) else "checks of torque satisfied"
+
+
 def _malfunction(contents: SubmissionContents) -> str:
     """How the checks end with a cylinder out of work, in a few words; the sheet names those exceeded at its top."""
     unknown = contents.unsearched or any(one.ended or any(c.missing for c in one.checks) for one in contents.misfiring)
@@ -128,6 +140,12 @@ def _malfunction(contents: SubmissionContents) -> str:
 def exceeded_by_malfunction(contents: SubmissionContents) -> tuple[str, ...]:
     """Names of the checks that a cylinder out of work exceeds."""
     return tuple(dict.fromkeys(c.name for one in contents.misfiring for c in one.checks if c.exceeded))
+
+
+def malfunction_on_first_sheet(contents: SubmissionContents) -> tuple[str, ...]:
+    """The same, few of many; section 6 has them all."""
+    names = exceeded_by_malfunction(contents)
+    return names if len(names) <= FEW else (*names[: FEW - 1], f"{len(names) - FEW + 1} more")
 
 
 def _power(watts: float) -> str:
@@ -475,6 +493,15 @@ def misfires(contents: SubmissionContents) -> Table:
     return Table.of(row(s, shaft.spring) for s, shaft in enumerate(contents.shafts))
 
 
+def firing_checks(contents: SubmissionContents) -> Table:
+    """Every check of the response with all cylinders firing, where section 9 has the worst with one out of work."""
+    words = Words(contents.seen.unit)
+    judged = [one for one in contents.normal or () if one.exceeded or one.satisfied or one.missing]
+    ordered = sorted(judged, key=_severity)
+    rows = [(str(c.status), c.name, c.margin_word, _speed(c.speed, words), *_sides(c, words)) for c in ordered]
+    return Table(("", "check", "margin", f"at [{words.unit}]", "value", "limit"), tuple(rows))
+
+
 def misfire_checks(contents: SubmissionContents) -> Table:
     """Every check of the response that decides, with the cylinder out of work that comes nearest to its limit."""
     words = Words(contents.seen.unit)
@@ -546,17 +573,6 @@ def heats(contents: SubmissionContents) -> Table:
         }
         for one in contents.shafts
         if one.heat.value > 0
-    )
-
-
-def barred(contents: SubmissionContents) -> Table:
-    """Ranges that may only be passed, and the checks that bar them."""
-    words, because = Words(contents.seen.unit), dict[str, list[str]]()
-    for check in contents.seen.assessment.checks:
-        for ends in check.barred if check.decides else ():
-            because.setdefault(words.barred([ends]), []).append(check.name)
-    return Table.of(
-        {f"barred range [{words.unit}]": ends, "because of": listed(names)} for ends, names in because.items()
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from trunnion.design.assessment.check import Check, Status, merged
 from trunnion.driveline.operation import Operation
@@ -161,10 +161,15 @@ class Assessment(Result):
         yield from (f"  switched off: {one}" for one in self.switched_off)
 
 
+def transient_checks(check: Check, checks: Iterable[Check]) -> list[Check]:
+    """Of ``checks`` those of what may be borne for passing quickly what ``check`` is about."""
+    names = (f"transient vibratory torque of {check.element}", f"{check.name}, passing")
+    return [one for one in checks if one.name in names]
+
+
 def passable(check: Check, checks: tuple[Check, ...], speed: float | None) -> bool:
     """Whether an exceeded check only bars speeds: its transient limit holds, and the line does not run there."""
-    partner = (f"transient vibratory torque of {check.element}", f"{check.name}, passing")
-    holds = any(c.name in partner and c.status is Status.SATISFIED for c in checks)
+    holds = any(one.status is Status.SATISFIED for one in transient_checks(check, checks))
     inside = speed is not None and any(a <= speed <= b for a, b in check.barred)
     return bool(check.barred) and holds and not inside
 
