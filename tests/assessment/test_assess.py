@@ -520,3 +520,18 @@ def test_a_driven_line_with_unstable_ranges_has_its_response_solved_once_at_ever
     check = tn.assess(line, (0.5, 1.8)).check("parametric stability")
     assert len(check.barred) == 3
     assert len(looked) == len(set(looked)) > 100
+
+
+@pytest.mark.parametrize(("speed", "outside"), [(90.0, False), (110.0, False), (89.9, True), (500.0, True)])
+def test_an_operating_speed_beyond_the_range_is_said(speed, outside):
+    """No check looks where the line runs, which a verdict of the range would hide."""
+    parts = [
+        tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}]),
+        tn.Shaft(stiffness=1e4, damping=2.0, name="shaft"),
+        tn.Disk(inertia=0.8),
+    ]
+    running = tn.Operation(speed=speed, speed_range=(90.0, 110.0), speed_unit="rad/s")
+    line = tn.Driveline(parts, limits=[tn.Limit(of="shaft", max_torque=400.0)], operation=running)
+    said = [one for one in tn.assess(line).findings if "outside its speed_range" in one.sentence]
+    assert bool(said) == outside
+    assert not outside or f"It runs at {speed:g} rad/s, outside its speed_range, 90 rad/s to 110 rad/s" in str(said[0])

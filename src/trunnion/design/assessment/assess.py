@@ -34,7 +34,8 @@ from trunnion.equations.steady_base import require_balance
 from trunnion.errors import InputError
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.numerics.threads import on_threads
-from trunnion.results.finding import Finding, by_gravity
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime, keeps_time
 
 OF_RESPONSE = (
@@ -111,7 +112,9 @@ def assessment_of(subject: AssessmentInput) -> Assessment:
 def judgement(subject: AssessmentInput, checks: tuple[Check, ...], notes: Iterable[Finding] = ()) -> Assessment:
     """What follows from the checks of a line; ``notes`` of what they stand on."""
     verdict, barred = verdict_of(checks, subject.speed)
-    findings = by_gravity([*_findings(subject.cases, subject.unit), *shaken_stages(assemble(subject.line)), *notes])
+    findings = by_gravity(
+        [*_outside(subject), *_findings(subject.cases, subject.unit), *shaken_stages(assemble(subject.line)), *notes]
+    )
     return Assessment(
         verdict=verdict, checks=checks, barred=barred, low=subject.low, high=subject.high, speed=subject.speed,
         unit=subject.unit, findings=findings, operation=subject.line.operation or Operation(),
@@ -182,6 +185,19 @@ def of_line(subject: AssessmentInput) -> Iterator[Check]:
     yield from joint_angles(subject, assembly, turn)
     yield from uniformity(subject, turn)
     yield from bending(subject, assembly)
+
+
+def _outside(subject: AssessmentInput) -> Iterator[Finding]:
+    """An operating speed beyond the running range that the description states: nothing is judged where it runs."""
+    speed, stated = subject.speed, stated_range(subject.line)
+    if speed is None or stated is None or stated[0] <= speed <= stated[1]:
+        return
+    over = Words(subject.unit).ends(*stated)
+    yield Finding(
+        Gravity.DANGER,
+        f"It runs at {subject.shown(speed)}, outside its speed_range, {over}: no check looks there, and rules by the "
+        "rated speed take that one. Widen speed_range, or check speed.",
+    )
 
 
 def _findings(cases: tuple[LoadCaseResponse, ...], unit: str) -> tuple[Finding, ...]:
