@@ -26,3 +26,20 @@ def test_every_element_is_drawn_within_its_box(name: str) -> None:
         assert part.any(axis=0).mean() > 0.7, one.name  # its axle or body, from end to end
         if one.parent >= 0:
             assert one.begins == pytest.approx(found[one.parent].ends)  # no branch here
+
+
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize("ratio", [-3, 0.4, 1])
+def test_a_ratio_stands_clear_of_what_is_drawn_beside_it(ratio: float, named: bool) -> None:
+    """Also between the largest disks of a line, within the page, and over nothing that hides it."""
+    disks = [tn.Disk(inertia=one) for one in (0.01, 9.0, 9.0, 0.01)]
+    shaft = tn.Shaft(stiffness=1e4)
+    figure = draw(
+        tn.Driveline([disks[0], shaft, disks[1], tn.Ratio(ratio=ratio), disks[2], shaft, disks[3]]), named=named
+    )
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    (text,) = (one for one in axes.texts if one.get_text().startswith("i "))
+    box = text.get_window_extent()
+    assert axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1 and box.y1 <= axes.bbox.y1
+    assert not any(patch.get_window_extent().overlaps(box) for patch in axes.patches)

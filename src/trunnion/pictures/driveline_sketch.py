@@ -56,6 +56,8 @@ THROW = 0.5
 SHAFTS = (SpringElement, PiecewiseShaft)
 GEARS = (Ratio, GearPair, Planetary, Belt, Differential)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
+APART = 1.1
+"""Of the axles of a belt."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,10 @@ def _layout(line: Driveline, least: float, *, named: bool = True) -> _Layout:
     floor = _floors(places)
     ceiling = max(max(q.start[1], q.end[1]) for q in places)
     right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places) if named else x.max()
-    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + (1.5 if named else 2.0)])
+    room = max(
+        [1.5 if named else 2.0, *(_highest(q.element) + letter * 2.5 for q in places if isinstance(q.element, GEARS))]
+    )
+    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + room])
     low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
     high[0] = max(high[0], low[0] + least)
     return _Layout(places, low, high, size if named else LARGER * size, floor)
@@ -397,15 +402,34 @@ def _pendulum(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
         )
 
 
+def _wheels(element: Ratio | GearPair) -> tuple[float, float]:
+    """Radii of the wheel on the axle and of the one above it."""
+    share = float(np.clip(abs(element.speed_ratio), 0.25, 4.0))
+    return 0.8 / (1 + share), 0.8 * share / (1 + share)
+
+
+def _pulleys(belt: Belt) -> tuple[float, float]:
+    """The same of a belt, whose axles stand ``APART``."""
+    share = float(np.clip(belt.speed_ratio, 0.25, 4.0))
+    return 0.45 / max(1.0, share), 0.45 * share / max(1.0, share)
+
+
+def _highest(element: object) -> float:
+    """How far what has a ratio reaches above its axle."""
+    if isinstance(element, Ratio | GearPair):
+        first, second = _wheels(element)
+        return first + 2 * second
+    return APART + _pulleys(element)[1] if isinstance(element, Belt) else 0.95
+
+
 def _ratio(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two wheels in mesh, sizes by the ratio."""
     element = place.element
     assert isinstance(element, Ratio | GearPair)
-    share = float(np.clip(abs(element.speed_ratio), 0.25, 4.0))
-    first = 0.8 / (1 + share)
+    first, second = _wheels(element)
     _bar(axes, place.start, place.middle)
     _bar(axes, place.middle, place.end)
-    for radius, offset, face in ((first, 0.0, "#f1d9a7"), (first * share, first * (1 + share), "#f7ead0")):
+    for radius, offset, face in ((first, 0.0, "#f1d9a7"), (second, first + second, "#f7ead0")):
         centre = place.middle + offset * _across(place.direction)
         look: dict[str, Any] = {"fc": face, "ec": INK, "lw": 1.1, "zorder": 3}
         axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
@@ -415,9 +439,8 @@ def _belt(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two pulleys, sizes by the ratio, and a belt round them."""
     belt = place.element
     assert isinstance(belt, Belt)
-    share = float(np.clip(belt.speed_ratio, 0.25, 4.0))
-    radii = 0.45 / max(1.0, share), 0.45 * share / max(1.0, share)
-    centres = place.middle, place.middle + 1.1 * _across(place.direction)
+    radii = _pulleys(belt)
+    centres = place.middle, place.middle + APART * _across(place.direction)
     _bar(axes, place.start, place.end)
     for radius, centre in zip(radii, centres, strict=True):
         look: dict[str, Any] = {"fc": "#e9e9e9", "ec": INK, "lw": 1.1, "zorder": 3}
@@ -584,13 +607,20 @@ def _numbers(axes: Axes, place: _ElementPlace, size: float, between: bool) -> No
         text = "Ω"
     elif isinstance(element, Engine) and len(element.firing_order) > 1:
         text = "-".join(map(str, element.firing_order))
-    if isinstance(element, GEARS):  # beside the upper wheel
-        at = place.end + np.array([0.05, 0.75])
-        axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
+    if isinstance(element, GEARS):  # above the upper wheel, clear of a disk beside it
+        at = place.middle + _highest(element) * _across(place.direction) + np.array([0.0, 0.06])
+        axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="center", va="bottom", zorder=6)
     elif text:
         tall = 1.0 if isinstance(element, Rotor) else 1.2 if isinstance(element, Engine) else None
         height = tall or 0.55 + 0.9 * abs(np.sin(place.direction))
         colour = ACCENT if hasattr(element, "angle") else INK
         axes.text(
-            place.middle[0], place.middle[1] + height, text, fontsize=size, color=colour, ha="center", va="bottom"
+            place.middle[0],
+            place.middle[1] + height,
+            text,
+            fontsize=size,
+            color=colour,
+            ha="center",
+            va="bottom",
+            zorder=6,
         )
