@@ -535,3 +535,5 @@ def test_an_operating_speed_beyond_the_range_is_said(speed, outside):
     said = [one for one in tn.assess(line).findings if "outside its speed_range" in one.sentence]
     assert bool(said) == outside
     assert not outside or f"It runs at {speed:g} rad/s, outside its speed_range, 90 rad/s to 110 rad/s" in str(said[0])
+    judged_there = tn.assess(line, (80.0, 600.0)).findings
+    assert not any("outside its speed_range" in one.sentence for one in judged_there)

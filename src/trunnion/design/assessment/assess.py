@@ -190,7 +190,9 @@ def of_line(subject: AssessmentInput) -> Iterator[Check]:
 def _outside(subject: AssessmentInput) -> Iterator[Finding]:
     """An operating speed beyond the running range that the description states: nothing is judged where it runs."""
     speed, stated = subject.speed, stated_range(subject.line)
-    if speed is None or stated is None or stated[0] <= speed <= stated[1]:
+    if speed is None or stated is None:
+        return
+    if any(low <= speed <= high for low, high in (stated, (subject.low, subject.high))):
         return
     over = Words(subject.unit).ends(*stated)
     yield Finding(
