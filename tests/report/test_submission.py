@@ -18,6 +18,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.modes.mass_elastic import holzer, masses, springs
 from trunnion.pictures import driveline_sketch
 from trunnion.reporting.barred_ranges import FIRING, HOLDS, NONE, SILENT, barred, barred_ranges
+from trunnion.reporting.loads_table import loads
 from trunnion.reporting.overview_assessment import capital
 from trunnion.reporting.page import in_css
 from trunnion.reporting.submission import Submission
@@ -580,3 +581,41 @@ def test_a_range_that_only_a_misfire_bars_says_so(asked: str) -> None:
         one = next(check for check in contents.firing_checks if check.name == "vibratory torque of coupling")
         assert one.satisfied and one.value == pytest.approx(normal.max(), rel=1e-4)
         assert bool(firing_checks(contents).rows) == bool(asked)
+
+
+def test_drives_and_loads_stand_there_with_their_slopes() -> None:
+    """Torque and slope at the operating speed against differences of the formulas, behind gears of 2.5."""
+    speed, own = tn.rpm(1450), tn.rpm(580)
+    motor = tn.Motor(
+        name="motor", inertia=1.2, breakdown_torque=1100, breakdown_slip=0.09, synchronous_speed="1500 rpm",
+        pole_pairs=2, drive_share=1,
+    )  # fmt: skip
+    propeller = tn.Propeller(name="screw", inertia=9.0, rated_power="60 kW", rated_speed="600 rpm", damping_factor=2.6)
+    parts = [
+        motor, tn.Shaft(name="shaft", stiffness=2e4, damping=5.0), tn.Disk(name="wheel", inertia=0.2),
+        tn.Ratio(ratio=-2.5), tn.Disk(name="brake", inertia=0.2, load_torque=12.0, viscous_load=0.5), propeller,
+    ]  # fmt: skip
+    line = tn.Driveline(parts, operation=tn.Operation(speed=speed, speed_range=(100.0, 157.0), speed_unit="rpm"))
+    table = loads(tn.submission(line).contents)
+    assert table.heads[-1] == "lags above"
+    found = {row[0]: row for row in table.rows}
+
+    def screw(w: float) -> float:
+        return 60e3 / tn.rpm(600) ** 3 * w**2
+
+    carried = (screw(own) + 12.0 + 0.5 * own) / 2.5
+
+    def kloss(slip: float) -> float:
+        return 2 * 1100 * slip * 0.09 / (slip**2 + 0.09**2)
+
+    slip = brentq(lambda s: kloss(s) - carried, 0.0, 0.09, xtol=1e-15)
+    steep = (kloss(slip + 1e-6) - kloss(slip - 1e-6)) / 2e-6 / tn.rpm(1500)
+    lag = 0.09 * 2 * 25.0  # of its supply of 50 Hz
+    for name, torque, slope in (
+        ("motor", -carried, steep), ("screw", screw(own), 2.6 * screw(own) / own), ("brake", 12.0 + 0.5 * own, 0.5)
+    ):  # fmt: skip
+        at, by = (float(str(one).replace("−", "-")) for one in found[name][2:4])
+        assert at == pytest.approx(torque, rel=1e-3) and by == pytest.approx(slope, rel=1e-3), name
+    assert found["motor"][4] == f"{lag:.4g} Hz" and found["screw"][4] == "–"
+    assert "Kloss, 1100 N m at the slip 0.09, 1500 rpm without slip" in str(found["motor"][1])
+    assert "60 kW at 600 rpm" in str(found["screw"][1]) and "2.6 times" in str(found["screw"][1])

@@ -24,6 +24,7 @@ from trunnion.reporting import submission_tables as tables
 from trunnion.reporting import submission_words as words
 from trunnion.reporting.barred_ranges import barred, barred_on_first_sheet
 from trunnion.reporting.first_sheet import first_sheet
+from trunnion.reporting.loads_table import loads
 from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, capital, judged
 from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
@@ -137,6 +138,7 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "modes": Table.of(seen.natural_frequencies.table(frequency_unit(seen.unit))),
         "holzer": [(_mode_title(one), *tables.holzer_table(contents, one)) for one in contents.holzer],
         "engines": tables.engines(contents),
+        "loads": loads(contents),
         "excitations": tables.excitations(contents),
         "powers": tables.powers(contents),
         "crossings": tables.crossings(contents),

@@ -150,7 +150,8 @@ def gather(
     asked = [case for case in seen.subject.cases if case.response is not None]
     left_out += [f"Torques{case.suffix}: {case.answer}" for case in seen.subject.cases if case.response is None]
     cases = _searched(asked, left_out, done)
-    powers = unless_refused("Torque and power", lambda: tuple(p for case in cases for p in _powers(case)))
+    loaded = [case for case in cases if case.name in _load_cases(seen)]  # a cylinder out of work leaves the mean torque
+    powers = unless_refused("Torque and power", lambda: tuple(p for case in loaded for p in _powers(case)))
     shafts = unless_refused("Torques of the shafts", lambda: _shafts(cases))
     firing = unless_refused("All cylinders firing", lambda: _all_firing(seen, cases)) or ()
     normal = unless_refused("All cylinders firing", lambda: _vibratory(firing)) if firing else None
@@ -264,13 +265,17 @@ def _largest(cases: Iterable[LoadCaseResponse], word: str, spring: int) -> Large
     return next(top for top in tops if top.value >= most * (1 - ALIKE))
 
 
+def _load_cases(seen: OverviewAssessment) -> set[str]:
+    """Names of the line as described and of the load cases that it states."""
+    return {"", *(one.name for one in (seen.line.operation or Operation()).load_cases)}
+
+
 def _all_firing(seen: OverviewAssessment, cases: tuple[LoadCaseResponse, ...]) -> tuple[LoadCaseResponse, ...]:
     """Load cases of a line with cylinders, none of them out of work; () of a line without cylinders."""
     parts = seen.line.as_stated.parts
     if not any(True for _ in cylinders(parts)):
         return ()
-    loads = {"", *(one.name for one in (seen.line.operation or Operation()).load_cases)}
-    stated = [case for case in cases if case.name in loads]  # not those that put a cylinder out of work
+    stated = [case for case in cases if case.name in _load_cases(seen)]  # not those that put a cylinder out of work
     working = {
         name: {key: None for key in SILENT if getattr(one, key, None) is not None}
         for name, one in parts
