@@ -74,8 +74,8 @@ def _law(rotor: Rotor) -> Iterator[str]:
         return shown(float(getattr(rotor, key)), kind, digits=4)
 
     if isinstance(rotor, ElectricMachine) and rotor.breakdown_torque is not None:
-        slip = four(float(rotor.breakdown_slip or 0.0))
-        yield f"Kloss, {of('breakdown_torque', TORQUE)} at the slip {slip}, {of('synchronous_speed', SPEED)} without slip"
+        slip, synchronous = four(float(rotor.breakdown_slip or 0.0)), of("synchronous_speed", SPEED)
+        yield f"Kloss, {of('breakdown_torque', TORQUE)} at the slip {slip}, {synchronous} without slip"
     if isinstance(rotor, ElectricMachine) and rotor.gain is not None:
         limit = "" if rotor.torque_limit is None else f", at most {of('torque_limit', TORQUE)}"
         yield f"controller of {of('gain', DAMPING)}{limit}"
