@@ -19,6 +19,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.reporting import tables
 from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.contents import Contents, gather, with_chart
+from trunnion.reporting.modes_table import modes
 from trunnion.reporting.overview import Overview, overview
 from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
@@ -124,7 +125,7 @@ def _page(contents: Contents, shown: Mapping[str, ReportPicture], source: Path |
         "staged": any(feature(key).places(seen.line) for key in ("backlash", "stages")),
         "operation": tables.operation(contents, unit),
         "elements": tables.elements(seen.line),
-        "modes": tables.modes(contents, frequency_unit),
+        "modes": modes(seen),
         "crossings": tables.crossings(contents, unit, frequency_unit),
         "crossings_shown": tables.crossings_shown(contents),
         "driven": not seen.assembly.topology.free,

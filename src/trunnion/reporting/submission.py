@@ -25,13 +25,13 @@ from trunnion.reporting import submission_words as words
 from trunnion.reporting.barred_ranges import barred, barred_on_first_sheet
 from trunnion.reporting.first_sheet import first_sheet
 from trunnion.reporting.loads_table import loads
+from trunnion.reporting.modes_table import modes
 from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, capital, judged
 from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.reporting.provenance import fingerprint
 from trunnion.reporting.ranges import diagram_range
 from trunnion.reporting.submission_contents import SubmissionContents, gather
-from trunnion.reporting.tables import Table
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import frequency_unit
 from trunnion.results.units import range_words
@@ -135,7 +135,7 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "switched_off": seen.assessment.switched_off,
         "masses": tables.mass_table(contents),
         "springs": tables.spring_table(contents),
-        "modes": Table.of(seen.natural_frequencies.table(frequency_unit(seen.unit))),
+        "modes": modes(seen),
         "holzer": [(_mode_title(one), *tables.holzer_table(contents, one)) for one in contents.holzer],
         "engines": tables.engines(contents),
         "loads": loads(contents),

@@ -150,11 +150,6 @@ def _signs(text: str) -> str:
     return signs(text).replace(" deg", "°")
 
 
-def modes(contents: Contents, unit: str) -> Table:
-    """Natural frequencies and damping ratios."""
-    return Table.of(contents.overview.natural_frequencies.table(unit))
-
-
 def joints(line: Driveline) -> Table:
     """What each joint alone makes of a constant speed: U = tan β sin β."""
     rows = []
