@@ -537,3 +537,26 @@ def test_an_operating_speed_beyond_the_range_is_said(speed, outside):
     assert not outside or f"It runs at {speed:g} rad/s, outside its speed_range, 90 rad/s to 110 rad/s" in str(said[0])
     judged_there = tn.assess(line, (80.0, 600.0)).findings
     assert not any("outside its speed_range" in one.sentence for one in judged_there)
+
+
+def test_what_load_cases_say_alike_is_said_once_with_the_largest_share():
+    """Orders of a fan that swings are taken at its mean angle, in every load case by another share."""
+
+    def line(load, *cases):
+        fan = tn.Fan(name="fan", inertia=0.8, quadratic_load=load, excitation=[{"order": 5, "share": 0.3}])
+        running = tn.Operation(speed=100.0, speed_range=(90.0, 110.0), speed_unit="rad/s", load_cases=cases)
+        parts = [tn.ConstantSpeed(), tn.Shaft(stiffness=2e5, damping=2.0, name="shaft"), fan]
+        return tn.Driveline(parts, operation=running)
+
+    def said(of):
+        return [one.sentence for one in tn.assess(of).findings if "can shift up to" in one.sentence]
+
+    def share(sentence):
+        return float(re.search(r"up to ([\d.]+) %", sentence)[1])
+
+    factors = {"low": 0.5, "high": 3.0, "middle": 2.0}
+    alone = [share(*said(line(0.1 * factor))) for factor in (1.0, *factors.values())]
+    together = said(line(0.1, *(tn.LoadCase(name=name, factors={"fan": one}) for name, one in factors.items())))
+    assert len(set(alone)) > 2
+    assert [share(one) for one in together] == [max(alone)]
+    assert together[0].startswith("Torque is applied")

@@ -22,6 +22,11 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
+def all_of(words: Sequence[str]) -> str:
+    """ "a", "a and b", "a, b and c"."""
+    return " and ".join(one for one in (", ".join(words[:-1]), *words[-1:]) if one)
+
+
 def any_of(words: Sequence[str]) -> str:
     """ "a", "a or b", "a, b or c"."""
     return " or ".join(one for one in (", ".join(words[:-1]), *words[-1:]) if one)

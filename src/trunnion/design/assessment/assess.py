@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator
 
 from trunnion.design.assessment.assessment_input import WHOLE, AssessmentInput, LoadCaseResponse, SearchEffort, cases_of
@@ -34,10 +35,13 @@ from trunnion.equations.steady_base import require_balance
 from trunnion.errors import InputError
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.numerics.threads import on_threads
+from trunnion.results.counts import all_of
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime, keeps_time
 
+AT_MOST = re.compile(r"up to (\d[\d.]*(?:e[+-]?\d+)?) %")
+"""A largest share in a sentence."""
 OF_RESPONSE = (
     stated_limits, coupling_ratings, coupling_heat, brake_heat, converter_heat, gear_heat, ship_shafts, gear_hammer,
     slip_clutches,
@@ -203,18 +207,29 @@ def _outside(subject: AssessmentInput) -> Iterator[Finding]:
 
 
 def _findings(cases: tuple[LoadCaseResponse, ...], unit: str) -> tuple[Finding, ...]:
-    """What the responses say of themselves, once; what only one load case says, with its name."""
-    said: dict[str, tuple[Finding, list[str]]] = {}
+    """What the responses say of themselves, once; what only some load cases say, with their names; of what differs in
+    nothing but how large a share is at most, the largest."""
+    said: dict[str, list[tuple[Finding, str]]] = {}
     for case in cases:
         for finding in case.response.findings_in(unit) if case.response else ():
-            said.setdefault(finding.sentence, (finding, []))[1].append(case.name)
+            said.setdefault(AT_MOST.sub("up to %", finding.sentence), []).append((finding, case.name))
     everywhere = sum(case.response is not None for case in cases)
-    return by_gravity(
-        finding if len(names) == everywhere or names == [""] else _of_case(finding, names)
-        for finding, names in said.values()
-    )
+    found = []
+    for alike in said.values():
+        finding = max((one for one, _ in alike), key=_share)
+        names = list(dict.fromkeys(name for _, name in alike))
+        found.append(finding if len(names) == everywhere or names == [""] else _of_cases(finding, names))
+    return by_gravity(found)
 
 
-def _of_case(finding: Finding, names: list[str]) -> Finding:
-    where = " and ".join(f"load case {name}" if name else "as stated" for name in names)
+def _share(finding: Finding) -> float:
+    """The share [%] that is said to be the largest; 0 without one."""
+    found = AT_MOST.search(finding.sentence)
+    return float(found[1]) if found else 0.0
+
+
+def _of_cases(finding: Finding, names: list[str]) -> Finding:
+    named = [name for name in names if name]
+    cases = f"load case{'s' if len(named) > 1 else ''} {all_of(named)}"
+    where = f"as stated and in {cases}" if len(named) < len(names) else cases
     return Finding(finding.gravity, f"{where[0].upper()}{where[1:]}: {finding.sentence}")
