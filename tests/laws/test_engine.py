@@ -3,6 +3,7 @@ misfires, pressure curves from files, what happens to the throws when their numb
 
 from __future__ import annotations
 
+import warnings
 from itertools import pairwise
 
 import numpy as np
@@ -433,3 +434,34 @@ def test_odd_numbers_of_a_cylinder_are_said():
     (one,) = said
     assert float(str(one.message).split("cycle is ")[1].split(" N m")[0]) == pytest.approx(mean, rel=0.01)
     engine(pressure=[mirrored], **CYLINDER, drive_share=None)  # a compressor takes it
+
+
+@pytest.mark.parametrize(
+    ("bore", "mass", "said"),
+    [
+        (0.08, 0.5, ""),
+        (0.23, 38.0, ""),
+        (0.9, 5000.0, ""),
+        (0.08, 500.0, "too heavy for a bore of 80 mm"),
+        (0.23, 0.038, "too light for a bore of 230 mm"),
+    ],
+)
+def test_a_reciprocating_mass_of_another_unit_is_said(bore, mass, said):
+    """Of a car, a medium-speed engine and a slow two-stroke none; g read as kg, and kg as g."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", InputRemark)
+        engine(gas_torque=GAS, reciprocating_mass=mass, **CYLINDER | {"bore": bore})
+    found = [str(one.message) for one in caught if "reciprocating_mass" in str(one.message)]
+    assert len(found) == bool(said)
+    assert not said or said in found[0]
+
+
+@pytest.mark.parametrize(("share", "doubted"), [(0.09, False), (1.0, False), (9.0, True)])
+def test_a_share_above_the_mean_torque_is_said(share, doubted):
+    """9 for 9 %."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", InputRemark)
+        tn.Propeller(name="screw", inertia=3.0, quadratic_load=1.0, excitation=[{"order": 4, "share": share}])
+    said = [str(one.message) for one in caught]
+    assert len(said) == doubted
+    assert not doubted or "has a share of 9, that many times the mean torque; check it: 9 %" in said[0]

@@ -209,6 +209,15 @@ class Rotor(Element):
         """An inertia on which outer torques act."""
         return (Heavy(loaded=True),)
 
+    def doubts(self) -> Iterator[Doubt]:
+        """A harmonic torque above the mean one, as a share of which it is stated."""
+        yield from super().doubts()
+        for one in self.excitation:
+            if one.share is not None and one.share > 1:
+                problem = f"has a share of {one.share:g}, that many times the mean torque"
+                yield "excitation", problem, "check it: 9 % of the mean torque is a share of 0.09"
+                return
+
     def load_of(self, number: Numbers) -> TorqueCurve:
         """Outer torque over its own speed, positive where it resists, for the values of its numbers, one or many."""
         raise NotImplementedError

@@ -15,6 +15,9 @@ LOWEST_MEAN, HIGHEST_MEAN = 2e4, 8e6
 """Mean indicated pressures [Pa] beyond which the unit is doubted."""
 LARGEST = {"bore": 1.5, "stroke": 5.0}
 """Lengths [m] above which the unit is doubted: the largest two-strokes have 0.98 m and 3.5 m."""
+LIGHTEST, HEAVIEST = 1e2, 2e4
+"""Reciprocating mass over the cube of the bore [kg/m³] beyond which the unit is doubted: small pistons have some 1000,
+those of slow two-strokes with crosshead some 7000."""
 SPARSE = 60 * DEGREE
 """Crank angle without a point of a pressure curve above which that is said."""
 SAME_ANGLE = 0.01 * DEGREE
@@ -49,6 +52,12 @@ def _units(engine: Banks) -> Iterator[Doubt]:
         length = getattr(engine, key)
         if length is not None and length > most:
             yield key, f"is {length:g} m, more than any engine has", 'check its unit: write "230 mm", say'
+    if engine.bore is not None and engine.reciprocating_mass is not None:
+        filled = engine.reciprocating_mass / engine.bore**3
+        if not LIGHTEST <= filled <= HEAVIEST:
+            weight = "light" if filled < LIGHTEST else "heavy"
+            problem = f"is {engine.reciprocating_mass:.4g} kg, too {weight} for a bore of {1e3 * engine.bore:.4g} mm"
+            yield "reciprocating_mass", problem, "check the units of both: g read as kg, or kg as g, say"
 
 
 def _curves(engine: Banks) -> Iterator[Doubt]:

@@ -424,6 +424,7 @@ class Propeller(Consumer):
         return self
 
     def doubts(self) -> Iterator[Doubt]:
+        yield from super().doubts()
         if self.damping_factor is not None and self.damping_factor < 2:
             problem = "is less than 2, as if the torque coefficient rose with the speed of advance"
             yield "damping_factor", problem, "check a = 2 - J K_Q'(J)/K_Q(J) of the open-water diagram"
