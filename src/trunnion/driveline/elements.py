@@ -58,6 +58,12 @@ def _sheet(value: object) -> object:
         raise error.each(lambda one: one.but(element="", key=f"sheet.{one.key}")) from None
 
 
+def plain(value: object) -> object:
+    """A value as a remark shows it: None of tables, which no line holds."""
+    listed = isinstance(value, list | tuple) and any(isinstance(one, dict | Record) for one in value)
+    return None if listed or isinstance(value, dict) else value
+
+
 class Element(Record):
     """Base of all elements.
 
@@ -81,7 +87,7 @@ class Element(Record):
         super().__init__(**data)
         for key, problem, remedy in self.doubts():
             label = self.name or self.kind
-            remark = InputError(problem, element=label, key=key, value=getattr(self, key), remedy=remedy)
+            remark = InputError(problem, element=label, key=key, value=plain(getattr(self, key)), remedy=remedy)
             warnings.warn(InputRemark(str(remark)), stacklevel=2)
 
     @property

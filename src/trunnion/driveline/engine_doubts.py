@@ -15,9 +15,9 @@ LOWEST_MEAN, HIGHEST_MEAN = 2e4, 8e6
 """Mean indicated pressures [Pa] beyond which the unit is doubted."""
 LARGEST = {"bore": 1.5, "stroke": 5.0}
 """Lengths [m] above which the unit is doubted: the largest two-strokes have 0.98 m and 3.5 m."""
-LIGHTEST, HEAVIEST = 1e2, 2e4
+LIGHTEST, HEAVIEST = 1e2, 1e5
 """Reciprocating mass over the cube of the bore [kg/m³] beyond which the unit is doubted: small pistons have some 1000,
-those of slow two-strokes with crosshead some 7000."""
+those of slow two-strokes with crosshead up to some 30 000."""
 SPARSE = 60 * DEGREE
 """Crank angle without a point of a pressure curve above which that is said."""
 SAME_ANGLE = 0.01 * DEGREE

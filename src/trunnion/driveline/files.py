@@ -32,7 +32,7 @@ from trunnion.driveline.component_files import find, with_sheet
 from trunnion.driveline.curve_points import read_curve
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
-from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.elements import Disk, Element, plain
 from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
@@ -375,7 +375,7 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, around: Su
     except InputError as error:
         raise about(error, label).each(lambda one: _limit_elsewhere(_as_stated(one, data, stated), own)) from None
     for key, problem, remedy in (*element.doubts(), *element.file_doubts()):
-        remark = InputError(problem, element=label, key=key, value=stated.get(key), remedy=remedy)
+        remark = InputError(problem, element=label, key=key, value=plain(stated.get(key)), remedy=remedy)
         warnings.warn(InputRemark(str(_located(remark, source))), stacklevel=2)
     return element
 
