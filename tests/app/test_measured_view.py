@@ -474,6 +474,7 @@ def test_a_file_is_dropped_and_laid_over_the_line(tmp_path: Path, server_here: S
     page.set_default_timeout(180_000)
     look = Look(page, server_here)
     page.on("pageerror", lambda error: look.errors.append(str(error)))
+    page.on("filechooser", lambda chooser: None)  # the browser takes a while until it hands the first chooser over
     look.at("?view=measured")
     # Chosen by keyboard: the field is reached by Tab and opened by Enter.
     field = page.get_by_label("Measured file")
@@ -484,6 +485,8 @@ def test_a_file_is_dropped_and_laid_over_the_line(tmp_path: Path, server_here: S
         page.keyboard.press("Tab")
         if field.evaluate("node => node.getRootNode().activeElement === node"):
             break
+    else:
+        pytest.fail("the field is not reached by Tab")
     with page.expect_file_chooser() as chooser:
         page.keyboard.press("Enter")
     chooser.value.set_files([path, path.with_suffix(".channels.toml")])

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from served import browser  # noqa: F401
 
 import trunnion as tn
 
@@ -16,7 +15,7 @@ NAMES = ["truck", "harbour-tug", "two-stroke-ship", "six-cylinder-ship", "electr
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_the_first_sheet_is_one_page(browser: Any, name: str) -> None:  # noqa: F811
+def test_the_first_sheet_is_one_page(browser: Any, name: str) -> None:
     page = browser.new_page(viewport={"width": round(WIDTH), "height": round(HEIGHT)})
     page.emulate_media(media="print")
     page.set_content(tn.submission(tn.load(f"examples/{name}.toml")).html)

@@ -350,7 +350,8 @@ class StabilityView(View):
         for path, value in at.items():
             there = with_number(there, path, value)
         multipliers = Call("tn.stability", (LINE,), {"speed": speed})
-        run, brief = ({"turns": turns, "speed": speed} for turns in (float(TURNS), 1.0))
+        # By time: a free line makes its turns a little sooner or later once it is disturbed, and both are subtracted.
+        run, brief = ({"duration": 2 * np.pi * turns / speed, "speed": speed} for turns in (float(TURNS), 1.0))
         begin = Call("at", (0.0,), of=Call("tn.simulate", (LINE,), brief))
         start = Call("np.add", (begin, Call("disturbance", (DISTURBANCE,), of=multipliers)))
         shown = {"speed": speed}
