@@ -170,3 +170,30 @@ def test_charts_refuse_what_only_a_lagging_torque_decides(question: Callable[...
     with pytest.raises(tn.InputError, match="motor.corner_frequency: has a torque that lags") as refused:
         question(lags, *axes)
     assert "ask stability() at single speeds" in str(refused.value)
+    with pytest.raises(tn.InputError, match="studies of many lines would take it to follow at once"):
+        tn.tolerance_study(lags, {"input shaft.stiffness": 0.05}, 75.0, samples=256)
+
+
+NUMBERS = [
+    *(("motor", key) for key in ("inertia", "gain", "corner_frequency")), ("input shaft", "stiffness"),
+    ("input shaft", "damping"), ("output shaft", "stiffness"), ("pinion", "inertia"), ("generator", "inertia"),
+    ("generator", "power"),
+]  # fmt: skip
+
+
+def test_sensitivities_of_growth_have_the_lag() -> None:
+    own, speed = line(40e3), 75.0
+    found = tn.sensitivity(own, speed)
+    k = next(k for k, one in enumerate(found.quantities) if one.name.startswith("growth rate"))
+
+    def grows(changed: tn.Driveline) -> float:
+        """Its growth is checked against the integral above."""
+        return float(tn.stability(changed, speed).growth_rate)
+
+    for name, key in NUMBERS:
+        value = getattr(dict(own.parts)[name], key)
+        h = 1e-4
+        sides = [grows(own.replace(name, **{key: value * (1 + sign * h)})) for sign in (-1, 1)]
+        true = (sides[1] - sides[0]) / (2 * h * value)
+        d = found.parameters.index(f"{name}.{key}")
+        assert found.derivative[k, d] == pytest.approx(true, rel=2e-5, abs=1e-9 / value)

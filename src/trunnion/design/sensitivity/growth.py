@@ -28,6 +28,7 @@ from trunnion.equations.tree_matrices import tree_matrices
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import floquet_modes
+from trunnion.floquet.stability.lagging import lagging_matrices, lagging_mode, lags_count
 from trunnion.floquet.stability.stability import LONG
 from trunnion.modes.mode_content import ModeMotion
 from trunnion.numerics.spectrum import spectral_radius
@@ -71,6 +72,8 @@ def radius_slope(
     ComputationError : the integration did not settle.
     """
     every = [(one, True) for one in directions] + [(one, False) for one in axes]
+    if lags_count(near.assembly, near.assembly.coefficients(row)):
+        return _of_lagging(near, row, every)
     judged = _by_modes(near, row) or _by_the_period(near, row)
     none, radius = np.full(len(every), np.nan), judged.radius
     if not len(judged.multiplier):
@@ -82,6 +85,26 @@ def radius_slope(
         whole, half = (float((part.mean() * judged.period).real) for part in (change, change[::2]))
         slope[d], error[d] = whole, abs(whole - half) + judged.relative * float(np.abs(change).mean() * judged.period)
     return RadiusSlope(radius, judged.period, slope, error)
+
+
+def _of_lagging(near: Neighbourhood, row: Array, every: Sequence[tuple[Direction, bool]]) -> RadiusSlope:
+    """Of a straight line some of whose torques lag: its equations are constant, ln σ = μ times the period with the
+    eigenvalue μ of A/Ω, and ∂μ/∂p = l ∂(A/Ω)/∂p r."""
+    period = 2 * np.pi * float(require_period(near.assembly.line, near.assembly.topology))
+    found = lagging_mode(near.assembly, near.assembly.coefficients(row), period)
+    none, radius = np.full(len(every), np.nan), float(np.abs(found.critical))
+    if _equally_large(found.multiplier, found.critical, radius):
+        return RadiusSlope(radius, period, none, none, _equal_words(radius))
+    if not found.relative < COALESCE:
+        return RadiusSlope(radius, period, none, none, _coalescing_words(found.critical, radius))
+    slope, error = np.zeros((2, len(every)))
+    for d, (one, follow) in enumerate(every):
+        co = near.assembly.coefficients(near.rows(row, one, SMOOTH_STEP * CENTRAL, follow=follow))
+        matrices = np.stack([matrix for _, matrix in lagging_matrices(near.assembly, co)]) / co.speed[:, None, None]
+        change = central(matrices, SMOOTH_STEP * one.size)
+        slope[d] = float((found.left @ change @ found.right).real) * period
+        error[d] = found.relative * float(np.abs(found.left) @ np.abs(change) @ np.abs(found.right)) * period
+    return RadiusSlope(radius, period, slope, error)
 
 
 @dataclass(frozen=True)

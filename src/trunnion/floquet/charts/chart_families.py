@@ -192,18 +192,11 @@ class LineFamily(ChartFamily):
     @cached_property
     def passive(self) -> bool:
         """Whether at points all over the axes nothing varies with the angle and nothing feeds energy in."""
-        co = self._of_straight
+        co = self.of_straight
         return co is not None and not co.fed and not np.any(co.stiffness < 0)
 
-    @property
-    def decided_by_lags(self) -> bool:
-        """Whether the line is straight and a torque that lags behind the speed has to make up for what feeds energy in:
-        a chart, to which the torque follows at once, would not tell where it grows."""
-        co = self._of_straight
-        return co is not None and bool(co.lags) and co.fed
-
     @cached_property
-    def _of_straight(self) -> LineCoefficients | None:
+    def of_straight(self) -> LineCoefficients | None:
         """Coefficients at points all over the axes of a line that nothing varies there; of others None."""
         table = self.table(*spread(Box.around(self.x.values, self.y.values)))
         if has_joint_angles(self.assembly, table):

@@ -18,7 +18,6 @@ import numpy as np
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.machines import lagging
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.first_order import LARGEST_DENSE
@@ -46,6 +45,7 @@ from trunnion.floquet.charts.cost_model import (
 )
 from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build_with_numpy
 from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
+from trunnion.floquet.stability.lagging import refuse_lags
 from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.patches.patches import PatchedFunction
 from trunnion.numerics.workers import shared_with, workers_of_client
@@ -321,7 +321,8 @@ def _line_task(
     refuse_pendulums(assembly.line, NOT_ALIKE)
     family = family_of(assembly, across, up, base, twisted)
     _refuse_too_long(family)
-    _refuse_lags(family)
+    if (straight := family.of_straight) is not None:
+        refuse_lags(assembly, straight, "charts")
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]
     remarks = (*clipped, *_idle(family, across, up, "line", numpy_only), *said)
@@ -377,19 +378,6 @@ def _refuse_too_long(family: LineFamily) -> None:
     seconds = long_chart_seconds(size, pixels, family.phase(*ends), family.needs_stages)
     remedy = "ask for fewer points, join neighbouring parts, or ask stability() at single speeds"
     require_estimate(size, f"a chart of {pixels} points", seconds, long_chart_bytes(size, pixels), remedy=remedy)
-
-
-def _refuse_lags(family: LineFamily) -> None:
-    """Refuse a chart of which the stability of single speeds would say something else."""
-    machines = lagging(family.assembly.line.parts)
-    if machines and family.decided_by_lags:
-        raise InputError(
-            "has a torque that lags behind the speed and has to make up for what feeds energy in: charts would take it "
-            "to follow at once",
-            element=machines[0],
-            key="corner_frequency",
-            remedy="ask stability() at single speeds, or assess() over all of them",
-        )
 
 
 def _idle(family: ChartFamily, x: ChartAxis, y: ChartAxis, what: str, numpy_only: bool = False) -> list[str]:

@@ -15,11 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
+from trunnion.driveline.machines import lagging
 from trunnion.equations.aligned import UnitMasses
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices, rigid_motions
 from trunnion.equations.steady_base import has_joint_angles
+from trunnion.errors import InputError
 from trunnion.modes.damped_modes import Lagging, with_lags
 from trunnion.results.verdict import Verdict, verdicts
 
@@ -27,6 +29,24 @@ from trunnion.results.verdict import Verdict, verdicts
 def lags_count(assembly: Assembly, coefficients: LineCoefficients) -> bool:
     """Whether torques lag and nothing else varies, so that what lags has equations here."""
     return bool(coefficients.lags) and not coefficients.waves and not has_joint_angles(assembly)
+
+
+def refuse_lags(assembly: Assembly, coefficients: LineCoefficients, what: str) -> None:
+    """Refuse a straight line where a torque that lags has to make up for what feeds energy in: ``what`` is asked would
+    take it to follow at once, and the stability of single speeds say something else.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if coefficients.lags and coefficients.fed:
+        raise InputError(
+            f"has a torque that lags behind the speed and has to make up for what feeds energy in: {what} would take "
+            "it to follow at once",
+            element=lagging(assembly.line.parts)[0],
+            key="corner_frequency",
+            remedy="ask stability() at single speeds, or assess() over all of them",
+        )
 
 
 def lagging_matrices(assembly: Assembly, coefficients: LineCoefficients) -> list[tuple[UnitMasses, Array]]:
@@ -88,6 +108,36 @@ def lagging_multipliers(
         multipliers[falling], error[falling], (modes / np.abs(modes).max(axis=0))[:, falling],
         float(np.abs(multipliers[most])), float(error[most]),
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class LaggingMode:
+    """multiplier: those that are judged; critical: the largest of them; right, left: its vectors in the coordinates of
+    ``lagging_matrices``, left·right = 1; relative: what rounding changes of a derivative through them, over it."""
+
+    multiplier: Complex
+    critical: complex
+    right: Complex
+    left: Complex
+    relative: float
+
+
+def lagging_mode(assembly: Assembly, coefficients: LineCoefficients, period: float) -> LaggingMode:
+    """The disturbance of one case that grows fastest over a ``period`` [rad of input angle]."""
+    from scipy.linalg import eig
+
+    ((_, matrix),) = lagging_matrices(assembly, coefficients)
+    speed = float(coefficients.speed[0])
+    values, left, right = eig(matrix / speed, left=True, right=True)
+    judged = np.flatnonzero(~_aside(values, rigid_motions(assembly.topology, coefficients).shape[1]))
+    multipliers = np.exp(values * period)
+    most = int(judged[np.abs(multipliers[judged]).argmax()])
+    adjoint = left[:, most].conj() / (left[:, most].conj() @ right[:, most])
+    rounding = np.finfo(float).eps * len(matrix) * float(np.linalg.norm(matrix / speed, 2) * np.linalg.norm(adjoint))
+    apart = float(np.sort(np.abs(values - values[most]))[1])
+    return LaggingMode(
+        multipliers[judged], complex(multipliers[most]), right[:, most], adjoint, 2 * rounding / max(apart, 1e-300)
+    )
 
 
 def _aside(values: Complex, count: int) -> Flags:

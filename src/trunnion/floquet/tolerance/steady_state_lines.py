@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Array, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import (
+    has_joint_angles,
     has_periodic_base,
     refuse_dragged,
     require_own_motion,
@@ -19,6 +20,7 @@ from trunnion.equations.steady_base import (
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.floquet.charts.chart_pixels import Pixels
+from trunnion.floquet.stability.lagging import refuse_lags
 from trunnion.floquet.tolerance.many_lines import ManyLines
 from trunnion.waiting import keep_time
 
@@ -64,6 +66,9 @@ def lines_like(
         require_period(assembly.line, assembly.topology)
         require_own_motion(assembly, table)
     elif not has_periodic_base(assembly, table):
+        co = assembly.coefficients(table, statically_twisted=twisted)
+        if not co.waves and not has_joint_angles(assembly, table):
+            refuse_lags(assembly, co, "studies of many lines")
         return ManyLines.of(assembly, table[:1], twisted, threads)
     from trunnion.floquet.propagation.about_steady_states import pixels_of_rows
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
