@@ -7,12 +7,14 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.driveline.engine import Engine
+from trunnion.driveline.machines import lagging
 from trunnion.driveline.mean_balance import balances_in_words
 from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.gear_losses import sliding
 from trunnion.equations.graph_matrices import require_fixed_speeds
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.loads import drive_places, gear_losses, given_shares, loads_on_unknowns, mean_loads, own_loads
 from trunnion.errors import InputError
 
@@ -178,6 +180,24 @@ def require_tree(assembly: Assembly, what: str) -> None:
 
 LONGEST_TIED = 24
 """Unknowns of a line with a differential or a loop up to which its matrices are multiplied by the thousand."""
+
+
+def refuse_lags(assembly: Assembly, coefficients: LineCoefficients, what: str) -> None:
+    """Refuse a straight line where a torque that lags has to make up for what feeds energy in: ``what`` is asked would
+    take it to follow at once, and the stability of single speeds say something else.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if coefficients.lags and coefficients.fed:
+        raise InputError(
+            f"has a torque that lags behind the speed and has to make up for what feeds energy in: {what} would take "
+            "it to follow at once",
+            element=lagging(assembly.line.parts)[0],
+            key="corner_frequency",
+            remedy="ask stability() at single speeds, or assess() over all of them",
+        )
 
 
 def require_short_ties(assembly: Assembly) -> None:

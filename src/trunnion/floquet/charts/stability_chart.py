@@ -24,6 +24,7 @@ from trunnion.equations.first_order import LARGEST_DENSE
 from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import (
     has_periodic_base,
+    refuse_lags,
     require_no_steady_state,
     require_own_motion,
     require_short_ties,
@@ -45,7 +46,6 @@ from trunnion.floquet.charts.cost_model import (
 )
 from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build_with_numpy
 from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
-from trunnion.floquet.stability.lagging import refuse_lags
 from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.patches.patches import PatchedFunction
 from trunnion.numerics.workers import shared_with, workers_of_client

@@ -15,13 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
-from trunnion.driveline.machines import lagging
 from trunnion.equations.aligned import UnitMasses
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices, rigid_motions
 from trunnion.equations.steady_base import has_joint_angles
-from trunnion.errors import InputError
 from trunnion.modes.damped_modes import Lagging, with_lags
 from trunnion.results.verdict import Verdict, verdicts
 
@@ -29,24 +27,6 @@ from trunnion.results.verdict import Verdict, verdicts
 def lags_count(assembly: Assembly, coefficients: LineCoefficients) -> bool:
     """Whether torques lag and nothing else varies, so that what lags has equations here."""
     return bool(coefficients.lags) and not coefficients.waves and not has_joint_angles(assembly)
-
-
-def refuse_lags(assembly: Assembly, coefficients: LineCoefficients, what: str) -> None:
-    """Refuse a straight line where a torque that lags has to make up for what feeds energy in: ``what`` is asked would
-    take it to follow at once, and the stability of single speeds say something else.
-
-    Raises
-    ------
-    InputError : so.
-    """
-    if coefficients.lags and coefficients.fed:
-        raise InputError(
-            f"has a torque that lags behind the speed and has to make up for what feeds energy in: {what} would take "
-            "it to follow at once",
-            element=lagging(assembly.line.parts)[0],
-            key="corner_frequency",
-            remedy="ask stability() at single speeds, or assess() over all of them",
-        )
 
 
 def lagging_matrices(assembly: Assembly, coefficients: LineCoefficients) -> list[tuple[UnitMasses, Array]]:

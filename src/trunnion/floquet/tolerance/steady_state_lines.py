@@ -13,6 +13,7 @@ from trunnion.equations.steady_base import (
     has_joint_angles,
     has_periodic_base,
     refuse_dragged,
+    refuse_lags,
     require_own_motion,
     require_steady_base,
     require_tree,
@@ -20,7 +21,6 @@ from trunnion.equations.steady_base import (
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.floquet.charts.chart_pixels import Pixels
-from trunnion.floquet.stability.lagging import refuse_lags
 from trunnion.floquet.tolerance.many_lines import ManyLines
 from trunnion.waiting import keep_time
 
