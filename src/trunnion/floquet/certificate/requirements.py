@@ -1,15 +1,12 @@
 """What a box must hold for its numbers to be enclosed: one formula at all its speeds, straight lines along tolerances,
 springs that stay in one stage.
 
-Curves of machines are taken by their tangents. Between two of its knots a curve is one formula, whose slope takes no
-value at as many as ``BETWEEN`` speeds unless it is constant (a cubic's at two, Kloss's at four); so slopes alike there,
-between all knots, are alike at all speeds.
+Curves of machines are taken by their tangents. Slopes alike at all ``curve_speeds`` are alike at all speeds.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 
 import numpy as np
 
@@ -18,6 +15,7 @@ from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.curve_speeds import curve_speeds
 from trunnion.errors import InputError
 from trunnion.floquet.certificate.box_coefficients import ANGLE, STATED, STEEPEST, NumberRange, staged
 from trunnion.floquet.certificate.working_stages import follows_otherwise, require_stages_held
@@ -27,8 +25,6 @@ AFFINE = (
     "load_torque", "viscous_load", "quadratic_load",
 )  # fmt: skip
 """Numbers that the equations' own are linear in, one at a time."""
-BETWEEN = 8
-"""Speeds looked at between two knots of a curve."""
 
 
 def require_linear(
@@ -43,7 +39,7 @@ def require_linear(
     InputError : names the parameter or the element, and the value.
     """
     line, topo, place = assembly.line, assembly.topology, list(assembly.packed.place)
-    looked_at = _looked_at(assembly, speeds)
+    looked_at = curve_speeds(assembly, *speeds)
     torque, varies = _carried(assembly, looked_at, ranges)  # about its own motion no such spring is enclosed
     for one in ranges:
         for k, column in enumerate(one.columns.index.tolist()):
@@ -100,18 +96,6 @@ def _carried(assembly: Assembly, speeds: Array, ranges: Sequence[NumberRange]) -
             one.columns.put(rows[-1], end)
     torque = assembly.static_torque(np.concatenate(rows))
     return torque[len(speeds) - 1], np.ptp(torque, axis=0) > 1e-12 * np.abs(torque).max(axis=0)
-
-
-def _looked_at(assembly: Assembly, speeds: tuple[float, float]) -> Array:
-    """Speeds of the input [rad/s] that tell whether anything goes with it otherwise than a polynomial: rising."""
-    topo = assembly.topology
-    ends = {*speeds}
-    for (station, _), (_, rotor) in zip(topo.disks, topo.rotors, strict=True):
-        turning = abs(float(topo.mean_speeds[station]))
-        if rotor.tangent and turning and not getattr(rotor, "set", False):
-            ends |= {knot / turning for knot in rotor.load.knots}
-    inside = sorted(one for one in ends if speeds[0] <= one <= speeds[1])
-    return np.unique([np.linspace(a, b, BETWEEN + 2) for a, b in pairwise(inside)])
 
 
 def _require_straight(assembly: Assembly, speed: float, ranges: Sequence[NumberRange]) -> None:

@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations.chain_batch import chain_batch, chain_program, loaded_by_speed
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.curve_speeds import curve_knots, curve_speeds
 from trunnion.equations.first_order import LARGEST_DENSE, LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
@@ -80,6 +81,11 @@ class ChartFamily(Protocol):
     def passive(self) -> bool:
         """Whether it is known that nothing grows anywhere on the axes."""
         return False
+
+    @property
+    def kinks(self) -> tuple[Array, Array]:
+        """Values of x and of y at which the quantities are not smooth."""
+        return np.empty(0), np.empty(0)
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices (points, m, m), their errors and ∫ tr(M⁻¹C) dτ (points,)."""
@@ -198,11 +204,33 @@ class LineFamily(ChartFamily):
     @cached_property
     def of_straight(self) -> LineCoefficients | None:
         """Coefficients at points all over the axes of a line that nothing varies there; of others None."""
-        table = self.table(*spread(Box.around(self.x.values, self.y.values)))
+        table = self.table(*self._places)
         if has_joint_angles(self.assembly, table):
             return None
         co = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
         return None if co.waves else co
+
+    @property
+    def kinks(self) -> tuple[Array, Array]:
+        """Speeds at which curves of machines go from one formula to another."""
+        none, along = np.empty(0), self.x if self.x.is_speed else self.y
+        if not along.is_speed:
+            return none, none
+        knots = curve_knots(self.assembly, float(along.values.min()), float(along.values.max()))
+        return (knots, none) if self.x.is_speed else (none, knots)
+
+    @property
+    def _places(self) -> tuple[Array, Array]:
+        """Points (x, y) all over the axes, with all speeds at which curves of machines show what they do."""
+        box = Box.around(self.x.values, self.y.values)
+        x, y = spread(box)
+        if not (self.x.is_speed or self.y.is_speed):
+            return x, y
+        ends, across = ((box.u0, box.u1), y) if self.x.is_speed else ((box.v0, box.v1), x)
+        speeds, across = curve_speeds(self.assembly, *ends), np.unique(across)
+        speed, other = np.repeat(speeds, len(across)), np.tile(across, len(speeds))
+        more = (speed, other) if self.x.is_speed else (other, speed)
+        return np.concatenate([x, more[0]]), np.concatenate([y, more[1]])
 
     @cached_property
     def program(self) -> ChainProgram:

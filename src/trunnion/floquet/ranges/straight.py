@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.equations.curve_speeds import curve_speeds
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
 from trunnion.floquet.stability.lagging import lagging_growth, lags_count
@@ -19,7 +20,8 @@ TURN = 2 * np.pi
 
 def straight_ranges(span: Span) -> UnstableRanges:
     """Negative damping, or a torque that grows with the speed, over a range."""
-    speeds = np.unique(np.concatenate([[span.start], np.linspace(span.start, span.high, POINTS)]))
+    curves = curve_speeds(span.assembly, span.start, span.high)
+    speeds = np.unique(np.concatenate([[span.start], np.linspace(span.start, span.high, POINTS), curves]))
 
     def judge(at: Array) -> StabilityOverSpeed:
         verdict = verdicts_at(span.assembly, at, table=span.table(at))

@@ -250,17 +250,31 @@ def patched(
     box = Box.around(u, v)
     if (few := family.leading(box, LOOKED_AT, GROUP * tolerance / 4, threads, report_progress)) is not None:
         return Region(family, few, box, threads)
+    kinks = [family.to_patch(own, of_x) for own, of_x in zip(family.kinks, (True, False), strict=True)]
     for share in EASIER:
         asked, most = share * tolerance / 4, MOST_BOXES if share != EASIER[-1] else np.inf
         sampler = family.sampler(box, 1_000_000, asked, threads)
         try:
             built = patches.build(
-                _at_most(most, sampler.evaluate), sampler.boxes, u, v, asked, direct_below=-1, tick=report_progress
-            )
+                _at_most(most, sampler.evaluate), _cut(sampler.boxes, *kinks), u, v, asked, direct_below=-1,
+                tick=report_progress,
+            )  # fmt: skip
         except _NeverSettlesError:
             continue
         break
     return Region(family, built, box, threads)
+
+
+def _cut(boxes: list[Box], u: Array, v: Array) -> list[Box]:
+    """Boxes cut where the quantities have kinks, so that they are smooth in each."""
+
+    def parts(low: float, high: float, at: Array) -> list[tuple[float, float]]:
+        inside = np.unique(at[(at > low) & (at < high)]).tolist()
+        return list(pairwise([low, *inside, high]))
+
+    return [
+        Box(*across, *up) for one in boxes for across in parts(one.u0, one.u1, u) for up in parts(one.v0, one.v1, v)
+    ]
 
 
 class _NeverSettlesError(Exception):
