@@ -190,7 +190,7 @@ class LineSystem(Portable):
     @cached_property
     def _many(self) -> int:
         """Numbers of a line."""
-        return len(self.numbers(self.assembly.table(1, 1.0)[0]))
+        return len(self.numbers(self.assembly.table(1)[0]))
 
     def untwisted(self, table: Array) -> LineCoefficients:
         """As of ``Assembly.untwisted``."""

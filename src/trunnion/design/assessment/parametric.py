@@ -90,12 +90,14 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
     own = _of_motion(subject, case, found, worst[0], worst[1], straight)
     if found.ranges:
+        fed = _constant_power(case) or "negative damping, or a torque that grows with the speed, feeds it"
         if not case.parametric:
-            fed = "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
-            why = f"{here}: {_lag(case, straight) or _constant_power(case) or fed}"
+            why = f"{here}: {_lag(case, straight) or fed}"
             margin = -np.inf
         else:
             why = here + (_resonance(case, float(speeds[at])) if subject.naming else "")
+            if straight < 0:
+                why += f": with joints straight and meshes even it grows too, {fed}"
             margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
         because = (
             f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {why}; unstable {_ranges(subject, found)}"

@@ -77,7 +77,7 @@ def clutch_torque(assembly: Assembly, name: str) -> ClutchTorque | None:
     group = topo.group_of(link)
     members = [s for s, station in enumerate(topo.stations) if station.group == group]
     beyond = set(stations_beyond(topo, link).tolist())
-    numbers = assembly.coefficients(assembly.table(1, 1.0), free_play=True, any_frequency=True)
+    numbers = assembly.coefficients(assembly.table(1), free_play=True, any_frequency=True)
     for sense, side in ((1, [s for s in members if s in beyond]), (-1, [s for s in members if s not in beyond])):
         found = _told_by(assembly, side, link, numbers)
         if found is not None:

@@ -211,7 +211,7 @@ class SteadyStates:
 
 def of_tree(assembly: Assembly) -> bool:
     """Whether the entries of a tree are all that a line's equations have about any motion."""
-    topo, table = assembly.topology, assembly.table(1, 1.0)
+    topo, table = assembly.topology, assembly.table(1)
     row, co = table[0], assembly.untwisted(table)
     parts = sliders(assembly.packed, topo, row) or placed_clutches(assembly, row) or placed_pendulums(assembly, row)
     acting = topo.graph or topo.lost or topo.rubs or topo.drags or parts
