@@ -22,6 +22,7 @@ from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import quantities
 from trunnion.floquet.charts.chart_pixels import Pixels, judge
 from trunnion.floquet.propagation.tied_lines import tied_matrices
+from trunnion.floquet.stability.lagging import lagging_pixels, lags_count
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
 from trunnion.numerics.chain.exponential_monodromy import March, marched, step_halving
@@ -109,12 +110,28 @@ class ManyLines:
             judged.append(self._mended(own, table(number), tolerance, stiff[number]))
         return judged
 
+    def _lagging(self, table: Array) -> Pixels | None:
+        """Straight lines some of whose torques lag, by their eigenvalues; None of others."""
+        co = self.assembly.coefficients(table[:1], statically_twisted=self.statically_twisted)
+        if not lags_count(self.assembly, co, table):
+            return None
+        parts = np.array_split(table, max(1, -(-len(table) // STEPPED_AT_ONCE)))
+        return _joined(on_threads(self._by_eigenvalues, parts, self.threads))
+
+    def _by_eigenvalues(self, rows: Array) -> Pixels:
+        co = self.assembly.coefficients(rows, statically_twisted=self.statically_twisted)
+        return lagging_pixels(self.assembly, co, self.period)
+
     def _stiff(self, table: Array, tolerance: float) -> bool:
+        if self._lagging(table[:FIRST]) is not None:
+            return False
         return bool(np.mean(_too_coarse(self.integrated(table[:FIRST], tolerance))) > 0.5)
 
     def _by(self, part: tuple[Array, float, bool]) -> Pixels:
         """Rows in the way that suits most of them."""
         rows, tolerance, stiff = part
+        if (found := self._lagging(rows)) is not None:
+            return found
         return self.stepped(rows) if stiff else self.integrated(rows, tolerance)
 
     def _mended(self, parts: list[Pixels], table: Array, tolerance: float, stiff: bool) -> Pixels:

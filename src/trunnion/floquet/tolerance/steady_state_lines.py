@@ -10,10 +10,8 @@ import numpy as np
 from trunnion.arrays import Array, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import (
-    has_joint_angles,
     has_periodic_base,
     refuse_dragged,
-    refuse_lags,
     require_own_motion,
     require_steady_base,
     require_tree,
@@ -66,9 +64,6 @@ def lines_like(
         require_period(assembly.line, assembly.topology)
         require_own_motion(assembly, table)
     elif not has_periodic_base(assembly, table):
-        co = assembly.coefficients(table, statically_twisted=twisted)
-        if not co.waves and not has_joint_angles(assembly, table):
-            refuse_lags(assembly, co, "studies of many lines")
         return ManyLines.of(assembly, table[:1], twisted, threads)
     from trunnion.floquet.propagation.about_steady_states import pixels_of_rows
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
