@@ -216,3 +216,47 @@ def test_studies_of_many_lines_have_the_lag(power: float) -> None:
         worst = worst.replace(name, **{key: value})
     found = tn.stability(worst, speed)
     assert found.growth_rate == pytest.approx(study.worst.growth_rate, rel=1e-6, abs=1e-9)
+
+
+def growth_of(power: float, mean: float, **more: float) -> float:
+    """Of the fastest disturbance [1/s], the turn of the whole line set aside."""
+    values = np.linalg.eigvals(differences(power, mean, **more))
+    return float(np.sort(values.real[np.argsort(np.abs(values))[1:]])[-1])
+
+
+def test_a_tolerance_study_counts_lines_as_stability_judges_them() -> None:
+    """The share of powers below that at which the equations begin to grow; slopes that follow at once leave all
+    stable."""
+    low, high, mean = 20e3, 60e3, 90.0
+    begins = brentq(lambda power: growth_of(power, mean), low, high, xtol=1.0)
+    share = (begins - low) / (high - low)
+    found = tn.tolerance_study(line(40e3), {"generator.power": ("range", low, high)}, mean, samples=1 << 12)
+    assert 0.1 < share < 0.9 and found.probability == pytest.approx(share, abs=1e-3)
+    assert found.worst.growth_rate == pytest.approx(growth_of(high, mean), rel=1e-3)
+    at_once = tn.tolerance_study(line(40e3, None), {"generator.power": ("range", low, high)}, mean, samples=1 << 8)
+    assert at_once.probability == 1.0
+
+
+def test_the_slope_of_growth_has_the_lag() -> None:
+    """By the power, the corner frequency and a damping, against differences of the eigenvalues of the equations."""
+    power, mean = 40e3, 75.0
+    found = tn.sensitivity(line(power), mean, of=["growth", "checks"])
+    (one,) = [i for i, each in enumerate(found.quantities) if each.name.startswith("growth rate")]
+    assert found.quantities[one].value == pytest.approx(growth_of(power, mean), abs=2e-4)
+    (check,) = [i for i, each in enumerate(found.quantities) if each.name == "parametric stability"]
+
+    def by(name: str, size: float) -> float:
+        def shifted(share: float) -> float:
+            put = {"power": power, "corner": CORNER, "damping": DAMPING}
+            put[name] += share * size
+            return growth_of(put.pop("power"), mean, **put)
+
+        return (shifted(1e-2) - shifted(-1e-2)) / (2e-2 * size)
+
+    for path, name, size in (("generator.power", "power", power), ("motor.corner_frequency", "corner", CORNER)):
+        column = found.parameters.index(path)
+        wanted = by(name, size)
+        assert found.derivative[one, column] == pytest.approx(wanted, rel=5e-3)
+        assert found.derivative[check, column] == pytest.approx(wanted, rel=5e-3)
+    both = [found.derivative[one, found.parameters.index(f"{side} shaft.damping")] for side in ("input", "output")]
+    assert sum(both) == pytest.approx(by("damping", 1.0), rel=5e-3)
