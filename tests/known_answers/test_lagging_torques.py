@@ -260,3 +260,19 @@ def test_the_slope_of_growth_has_the_lag() -> None:
         assert found.derivative[check, column] == pytest.approx(wanted, rel=5e-3)
     both = [found.derivative[one, found.parameters.index(f"{side} shaft.damping")] for side in ("input", "output")]
     assert sum(both) == pytest.approx(by("damping", 1.0), rel=5e-3)
+
+
+def test_a_remedy_makes_a_straight_line_grow_no_more() -> None:
+    """By more inertia of the generator: at what is offered the equations grow nowhere in the range, a little less they
+    do."""
+    power, span = 40e3, (75.0, 90.0)
+    limits = [tn.Limit(of="* shaft", max_torque=1e6)]
+    found = tn.remedies(line(power, limits=limits), span)
+    (one,) = [each for each in found.of("parametric stability") if each.variable == "generator.inertia"]
+    assert "lets nothing grow" in one.sentence
+
+    def most(inertia: float) -> float:
+        line_of = line(power).replace_all({"generator": {"inertia": inertia}})
+        return max(tn.stability(line_of, speed).growth_rate for speed in np.linspace(*span, 7))
+
+    assert most(one.after) < 0 < most(0.97 * one.after)

@@ -190,6 +190,8 @@ def _sentence(
     change = found.variable.worded(found.value)
     if after is None:
         return f"{change} leaves nothing to pass quickly"
+    if after.status is Status.NOT_APPLICABLE:
+        return f"{change} lets nothing grow"
     left = f"margin {100 * after.margin:.3g} %"
     if before.required_margin:
         left += f", {100 * before.required_margin:.3g} % required"
