@@ -57,6 +57,10 @@ BOXES = 6
 OWN_BOXES = 8
 """The same about the motion that a line makes, times its unknowns: each takes some tenths of a second."""
 NAME = "parametric stability"
+UNTOLD = (
+    "negative damping, or a torque that grows with the speed, feeds disturbances, and a loss factor at all frequencies "
+    "has no equations in time that say whether they grow: state loss_factor_frequency"
+)
 NOT_EXCITED = "no joint has an angle and no mesh varies: nothing excites the line parametrically"
 
 
@@ -76,6 +80,9 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
         return
     speeds, growth = found.along.speed, found.along.growth_rate
     if not case.parametric and not found.ranges:
+        if np.any(found.along.verdict == Verdict.FAILED):
+            yield Check(NAME, Status.NOT_JUDGED, RULE, UNTOLD + case.suffix, load_case=case.name)
+            return
         yield Check(NAME, Status.NOT_APPLICABLE, RULE, NOT_EXCITED)
         return
     known = np.isfinite(growth)
