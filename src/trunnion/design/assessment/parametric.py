@@ -57,7 +57,7 @@ BOXES = 6
 OWN_BOXES = 8
 """The same about the motion that a line makes, times its unknowns: each takes some tenths of a second."""
 NAME = "parametric stability"
-UNTOLD = (
+FED_AND_LOSSY = (
     "negative damping, or a torque that grows with the speed, feeds disturbances, and a loss factor at all frequencies "
     "has no equations in time that say whether they grow: state loss_factor_frequency"
 )
@@ -81,7 +81,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     speeds, growth = found.along.speed, found.along.growth_rate
     if not case.parametric and not found.ranges:
         if np.any(found.along.verdict == Verdict.FAILED):
-            yield Check(NAME, Status.NOT_JUDGED, RULE, UNTOLD + case.suffix, load_case=case.name)
+            yield Check(NAME, Status.NOT_JUDGED, RULE, FED_AND_LOSSY + case.suffix, load_case=case.name)
             return
         yield Check(NAME, Status.NOT_APPLICABLE, RULE, NOT_EXCITED)
         return

@@ -22,7 +22,8 @@ from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import quantities
 from trunnion.floquet.charts.chart_pixels import Pixels, judge
 from trunnion.floquet.propagation.tied_lines import tied_matrices
-from trunnion.floquet.stability.lagging import lagging_pixels, lags_count
+from trunnion.floquet.stability.lagging import lags_count
+from trunnion.floquet.tolerance.lagging_lines import lagging_pixels
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
 from trunnion.numerics.chain.exponential_monodromy import March, marched, step_halving
