@@ -172,6 +172,21 @@ def test_charts_refuse_what_only_a_lagging_torque_decides(question: Callable[...
     assert "ask stability() at single speeds" in str(refused.value)
 
 
+def test_a_chart_shows_no_decay_that_a_lagging_torque_does_not_have() -> None:
+    """Of a line that nothing feeds: stable with the lag or without, but not by as much; regions there are none."""
+    parts = [
+        tn.Motor(name="motor", inertia=NEAR, gain=GAIN, drive_share=1, corner_frequency=CORNER),
+        tn.Shaft(name="shaft", stiffness=STIFF, damping=DAMPING),
+        tn.Fan(name="fan", inertia=FAR, quadratic_load=0.01),
+    ]
+    own, axes = tn.Driveline(parts), (("speed", 60.0, 90.0), ("shaft.stiffness", 0.9 * STIFF, 1.1 * STIFF))
+    with pytest.raises(tn.InputError, match="motor.corner_frequency: has a torque that lags behind the speed: charts"):
+        tn.stability_chart(own, *((*axis, 8) for axis in axes))
+    assert len(tn.tongues(own, *axes).tongues) == 0
+    assert tn.stability(own, 75.0).verdict is Verdict.STABLE
+    tn.stability_chart(own.replace("motor", corner_frequency=None), *((*axis, 8) for axis in axes))
+
+
 NUMBERS = [
     *(("motor", key) for key in ("inertia", "gain", "corner_frequency")), ("input shaft", "stiffness"),
     ("input shaft", "damping"), ("output shaft", "stiffness"), ("pinion", "inertia"), ("generator", "inertia"),

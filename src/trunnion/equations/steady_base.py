@@ -182,22 +182,24 @@ LONGEST_TIED = 24
 """Unknowns of a line with a differential or a loop up to which its matrices are multiplied by the thousand."""
 
 
-def refuse_lags(assembly: Assembly, coefficients: LineCoefficients, what: str) -> None:
-    """Refuse a straight line where a torque that lags has to make up for what feeds energy in: ``what`` is asked would
-    take it to follow at once, and the stability of single speeds say something else.
+def refuse_lags(assembly: Assembly, coefficients: LineCoefficients, *, growing: bool) -> None:
+    """Refuse a straight line with a torque that lags, which charts and searches for regions would take to follow at
+    once, so that the stability of single speeds says something else: how much it decays, and where the torque has to
+    make up for what feeds energy in whether it grows. ``growing``: only the second matters.
 
     Raises
     ------
     InputError : so.
     """
-    if coefficients.lags and coefficients.fed:
-        raise InputError(
-            f"has a torque that lags behind the speed and has to make up for what feeds energy in: {what} would take "
-            "it to follow at once",
-            element=lagging(assembly.line.parts)[0],
-            key="corner_frequency",
-            remedy="ask stability() at single speeds, or assess() over all of them",
-        )
+    if not coefficients.lags or (growing and not coefficients.fed):
+        return
+    has_to = " and has to make up for what feeds energy in" if coefficients.fed else ""
+    raise InputError(
+        f"has a torque that lags behind the speed{has_to}: charts would take it to follow at once",
+        element=lagging(assembly.line.parts)[0],
+        key="corner_frequency",
+        remedy="ask stability() at single speeds, or assess() over all of them",
+    )
 
 
 def require_short_ties(assembly: Assembly) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.reporting.overview_assessment import OverviewAssessment
@@ -32,7 +33,7 @@ def _speed(seen: OverviewAssessment) -> float:
     return seen.speed or seen.speed_range[1]
 
 
-def _under_load(seen: OverviewAssessment, count: int) -> np.ndarray:
+def _under_load(seen: OverviewAssessment, count: int) -> Array:
     """Frequencies (mode,) [rad/s] as checks take them; NaN where there is none."""
     found = np.full(count, np.nan)
     case = seen.subject.cases[0]

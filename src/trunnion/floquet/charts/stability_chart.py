@@ -59,6 +59,8 @@ if TYPE_CHECKING:
 Progress = Callable[[float], None]
 ABOUT_STEADY_STATES = "periodic steady states"
 """How ``StabilityChart.way`` names charts about the line's own motion."""
+CHART = "stability_chart"
+"""The row of the features table that speaks of charts, which show how fast disturbances decay or grow."""
 IN_NUMPY, SHARPEST = 0.01, 1e-12
 """Share of the tolerance that is asked for in NumPy: the kernels, too, know their samples that much better."""
 
@@ -180,7 +182,7 @@ def _about_steady_states(
     found = chart.pixels(across.values, up.values, lambda share: report_progress(0.95 * share))
     check = chart.check(found, across.values, up.values)
     report_progress(1.0)
-    left = (finding.sentence for finding in left_out("stability_chart", assembly.line))
+    left = (finding.sentence for finding in left_out(CHART, assembly.line))
     return StabilityChart(
         x=across.values, y=up.values, x_parameter=across.parameter, y_parameter=up.parameter, x_unit=across.unit,
         y_unit=up.unit, spectral_radius=found.every.radius, error_estimate=found.every.error,
@@ -277,7 +279,7 @@ def chart_task(
     y: AxisRequest,
     speed: float | str | None,
     twisted: bool,
-    analysis: str = "stability_chart",
+    analysis: str = CHART,
     *,
     numpy_only: bool = False,
     about_steady_state: bool = False,
@@ -322,7 +324,7 @@ def _line_task(
     family = family_of(assembly, across, up, base, twisted)
     _refuse_too_long(family)
     if (straight := family.of_straight) is not None:
-        refuse_lags(assembly, straight, "charts")
+        refuse_lags(assembly, straight, growing=analysis != CHART)
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]
     remarks = (*clipped, *_idle(family, across, up, "line", numpy_only), *said)
